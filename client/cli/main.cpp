@@ -1,0 +1,27 @@
+#include <cstdio>
+
+#include "client/cli/command.h"
+#include "core/frame/error.h"
+
+using namespace holdfast::cli;
+
+int main(int argc, char** argv) {
+  CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "holdfast 0.1.0");
+  try {
+    app.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  } catch (const holdfast::InputError& error) {
+    std::fprintf(stderr, "holdfast: %s\n", error.what());
+    return kBadInput;
+  } catch (const ServerUnreachable& error) {
+    std::fprintf(stderr, "holdfast: %s\n", error.what());
+    return kServerUnreachable;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "holdfast: %s\n", error.what());
+    return kFailed;
+  }
+}

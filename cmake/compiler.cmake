@@ -1,0 +1,32 @@
+# Warnings, sanitizers and the compiler cache: everything that is the same for every target.
+
+find_program(HOLDFAST_CCACHE ccache)
+if(HOLDFAST_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${HOLDFAST_CCACHE})
+endif()
+
+add_library(holdfast_warnings INTERFACE)
+target_compile_options(holdfast_warnings INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion
+  $<$<BOOL:${HOLDFAST_WERROR}>:-Werror>)
+
+if(HOLDFAST_SANITIZE)
+  add_compile_options(-fsanitize=${HOLDFAST_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${HOLDFAST_SANITIZE})
+endif()
+
+# holdfast_add_library(NAME SOURCES ... [LINK ...]): one static library for one folder, included by
+# paths from the top of the repository.
+function(holdfast_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:holdfast_warnings>)
+endfunction()
+
+# Kernel files alone may assume that arithmetic does not trap, which lets the compiler vectorise
+# selects. Never -ffast-math: tests for NaN must keep working.
+function(holdfast_kernel_sources)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+    "-O3;-fno-trapping-math;-fno-math-errno")
+endfunction()

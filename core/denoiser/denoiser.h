@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/frame/frame.h"
+
+namespace holdfast {
+
+/// What is fixed for the life of a denoiser.
+struct DenoiserConfig {
+  int width = 0;                ///< pixels, 1..kMaxDimension
+  int height = 0;               ///< pixels, 1..kMaxDimension
+  std::vector<Light> lights;    ///< each id at most once
+  std::vector<PlaneId> planes;  ///< exactly what every frame brings; depth and normal at least
+  std::string recipe = "reliable";
+  std::string preset = "balanced";
+  std::uint64_t seed = 0;
+  bool debug_planes = false;  ///< also return motion, history and confidence of each component
+};
+
+/// One timed stage of a frame.
+struct StageTime {
+  std::string stage;
+  double ms = 0;
+};
+
+/// Values that were not finite or out of range and were repaired on the way in.
+struct RepairCount {
+  PlaneId plane;
+  std::uint64_t values = 0;
+};
+
+/// What happened to one frame.
+struct FrameReport {
+  std::int64_t index = 0;
+  double ms = 0;                       ///< wall time inside the core
+  std::vector<StageTime> stages;
+  bool history_reset = false;          ///< first frame, cut or reset
+  double mean_history_frames = 0;      ///< over surface pixels, all components
+  std::vector<RepairCount> repaired;   ///< planes with at least one repaired value
+  std::uint64_t non_finite_out = 0;    ///< always 0; counted, not assumed
+};
+
+/// Filters the frames of one session in order. Owns the history; allocates nothing per frame after
+/// the first. Not thread-safe; one instance serves one session, many instances share the pool.
+class Denoiser {
+ public:
+  /// Throws InputError naming what is wrong with `config`.
+  explicit Denoiser(const DenoiserConfig& config);
+  ~Denoiser();
+  Denoiser(Denoiser&&) noexcept;
+  Denoiser& operator=(Denoiser&&) noexcept;
+
+  /// Filters one frame. `results` receives `composite` and each component's plane (and the debug
+  /// planes if asked for), at the session's size. Throws InputError for a frame that breaks a rule
+  /// (plane missing, unknown or of the wrong size; index not increasing; unknown light; singular or
+  /// non-finite matrix): then neither history nor `results` has changed.
+  FrameReport filter(const Frame& frame, PlaneSet& results);
+
+  /// Forgets all history; the next frame starts anew.
+  void reset();
+
+  const DenoiserConfig& config() const;
+  /// Bytes held for history and scratch.
+  std::size_t memory_bytes() const;
+  /// The passes and buffers of this configuration, one per line.
+  std::string plan_text() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Names of the recipes, in the order of the documentation.
+const std::vector<std::string>& recipe_names();
+/// Names of the presets, fastest first.
+const std::vector<std::string>& preset_names();
+/// Result planes of a configuration, in the order `Denoiser::filter` writes them.
+std::vector<PlaneId> result_planes(const DenoiserConfig& config);
+
+}  // namespace holdfast
