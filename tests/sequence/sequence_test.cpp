@@ -1,0 +1,2 @@
+#include "client/sequence/sequence.h"
+#include <gtest/gtest.h>
