@@ -41,11 +41,11 @@ enum class Repeat : std::uint8_t {
 
 /// A key-framed motion. Keys in strictly ascending time, at least one.
 struct Motion {
-  std::vector<Key> keys{Key{}};
+  std::vector<Key> keys = std::vector<Key>(1);
   Repeat repeat = Repeat::kHold;
 
   Motion() = default;
-  explicit Motion(const Transform& still) : keys{Key{0.0, still, false}} {}
+  explicit Motion(const Transform& still) { keys.front().transform = still; }
 
   /// The transform at a time in frames.
   Transform at(double frame) const;

@@ -23,7 +23,7 @@ struct Checker {
 /// A diffuse base below a GGX coat. The lobes are independent of each other.
 struct Material {
   glm::dvec3 albedo{0.7};  ///< diffuse, 0..1
-  std::optional<Checker> checker;
+  std::optional<Checker> checker = std::nullopt;
   double roughness = 1.0;    ///< perceptual, 0..1
   glm::dvec3 specular{0.0};  ///< reflectance at normal incidence (F0), 0..1; 0 = no lobe
   glm::dvec3 emission{0.0};  ///< radiance, >= 0
