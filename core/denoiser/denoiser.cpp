@@ -1,18 +1,156 @@
 #include "core/denoiser/denoiser.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
-#include "core/frame/conventions.h"
+#include "core/denoiser/component_filter.h"
+#include "core/denoiser/composite.h"
+#include "core/denoiser/frame_input.h"
+#include "core/denoiser/plan.h"
 #include "core/frame/error.h"
+#include "core/kernels/isa.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Times the stages of a frame: each call names the stage that has just ended.
+class StageTimer {
+ public:
+  explicit StageTimer(std::vector<StageTime>& out) : out_(out), last_(Clock::now()) {}
+  void end(std::string stage) {
+    const auto now = Clock::now();
+    out_.push_back({std::move(stage), std::chrono::duration<double, std::milli>(now - last_).count()});
+    last_ = now;
+  }
+
+ private:
+  std::vector<StageTime>& out_;
+  Clock::time_point last_;
+};
+
+/// The planes of `frame` must be exactly those of the session, each of the session's size.
+void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
+  for (const PlaneId id : config.planes) {
+    const Plane& plane = planes.at(id);
+    if (plane.width() != config.width || plane.height() != config.height)
+      throw InputError("plane " + plane_name(id),
+                       "must be " + std::to_string(config.width) + "x" + std::to_string(config.height),
+                       std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
+  }
+  for (const Plane& plane : planes)
+    if (std::find(config.planes.begin(), config.planes.end(), plane.id()) == config.planes.end())
+      throw InputError("plane " + plane_name(plane.id()), "must be one of the session's planes",
+                       "not among them");
+}
+
+}  // namespace
 
 class Denoiser::Impl {
  public:
-  explicit Impl(const DenoiserConfig& c) : config(c) {}
+  explicit Impl(const DenoiserConfig& c)
+      : config(c),
+        plan(Plan::make(c)),
+        scratch(c.width, c.height, plan.any_radiance, plan.any_shadow,
+                plan.recipe.vectors == HistoryVectors::kCandidates, c.debug_planes) {
+    selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
+    for (auto& g : guides) g = Guides(c.width, c.height);
+    if (plan.history) surface = SurfaceHistory(c.width, c.height);
+    for (const Plan::Entry& entry : plan.components)
+      filters.emplace_back(entry.component, plan.recipe, c.width, c.height);
+  }
+
+  FrameReport filter(const Frame& frame, PlaneSet& results) {
+    const auto start = Clock::now();
+    if (frame.index <= last_index)
+      throw InputError("frame index", "must be greater than " + std::to_string(last_index),
+                       std::to_string(frame.index));
+    check_planes(config, frame.planes);
+    scene.advance(frame, config.width, config.height, config.lights);  // the last that can throw
+
+    FrameReport report;
+    StageTimer timer(report.stages);
+    report.index = last_index = frame.index;
+    has_past = has_past && !frame.cut && plan.history;
+    report.history_reset = !has_past;
+    now = 1 - now;
+    load_guides(frame, report);
+    timer.end("guides");
+    const FramePair frames{guides[now], guides[1 - now], scene};
+    if (has_past) {
+      trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
+      timer.end("surface");
+    }
+    for (std::size_t k = 0; k < filters.size(); ++k) {
+      run_component(frame, frames, plan.components[k], filters[k], results, report);
+      timer.end(component_name(filters[k].component()));
+    }
+    report.non_finite_out = compose(guides[now], frame.planes, results);
+    timer.end("composite");
+    has_past = true;
+    report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return report;
+  }
+
+  void load_guides(const Frame& frame, FrameReport& report) {
+    Guides& out = guides[now];
+    out.view = scene.view();
+    out.rays = out.view.rays.cast<float>();
+    const PlaneId depth{PlaneKind::kDepth, {}}, normal{PlaneKind::kNormal, {}};
+    count_repairs(report, depth, load_depth(frame.planes.at(depth), out));
+    count_repairs(report, normal, load_normals(frame.planes.at(normal), out));
+    load_ids(frame.planes.find({PlaneKind::kObjectId, {}}), out);
+  }
+
+  void run_component(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
+                     ComponentFilter& component_filter, PlaneSet& results, FrameReport& report) {
+    const PlaneId id = component_plane(entry.component);
+    count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
+    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}};
+    if (entry.follows_shadows) {
+      const std::uint32_t light = entry.component.light;
+      input.light = &*std::find_if(config.lights.begin(), config.lights.end(),
+                                   [&](const Light& l) { return l.id == light; });
+      input.blockers = {&frame.planes.at(PlaneId::of_light(PlaneKind::kBlockerDistance, light)),
+                        &frame.planes.at(PlaneId::of_light(PlaneKind::kLightSample, light)),
+                        frame.planes.find(PlaneId::of_light(PlaneKind::kBlockerId, light))};
+    }
+    component_filter.run(input, scratch, results.add(id, config.width, config.height));
+    report.mean_history_frames +=
+        component_filter.mean_history_frames() / static_cast<double>(filters.size());
+    if (config.debug_planes) write_debug(entry.component, results);
+  }
+
+  void write_debug(Component component, PlaneSet& results) {
+    const auto copy = [&](PlaneKind kind, int first) {
+      Plane& out = results.add({kind, component}, config.width, config.height);
+      for (int c = 0; c < out.channels(); ++c)
+        for_each_row(config.height, [&](int y) {
+          std::copy_n(scratch.debug[first + c].row(y), config.width, out.channel(c).row(y));
+        });
+    };
+    copy(PlaneKind::kDebugMotion, kDebugX);
+    copy(PlaneKind::kDebugHistory, kDebugFrames);
+    copy(PlaneKind::kDebugConfidence, kDebugTrust);
+  }
+
+  static void count_repairs(FrameReport& report, PlaneId plane, std::uint64_t values) {
+    if (values > 0) report.repaired.push_back({plane, values});
+  }
+
   DenoiserConfig config;
-  std::int64_t last = std::numeric_limits<std::int64_t>::min();
+  Plan plan;
+  Scratch scratch;
+  Guides guides[2];
+  int now = 0;  ///< index of the current frame's guides
+  SurfaceHistory surface;
+  SceneMotion scene;
+  std::vector<ComponentFilter> filters;
+  std::int64_t last_index = std::numeric_limits<std::int64_t>::min();
+  bool has_past = false;
 };
 
 Denoiser::Denoiser(const DenoiserConfig& config) : impl_(std::make_unique<Impl>(config)) {}
@@ -21,44 +159,56 @@ Denoiser::Denoiser(Denoiser&&) noexcept = default;
 Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;
 
 FrameReport Denoiser::filter(const Frame& frame, PlaneSet& results) {
-  if (frame.index <= impl_->last)
-    throw InputError("frame index", "must be greater than " + std::to_string(impl_->last),
-                     std::to_string(frame.index));
-  for (const PlaneId id : impl_->config.planes) frame.planes.at(id);
-  impl_->last = frame.index;
-  for (const PlaneId id : result_planes(impl_->config)) {
-    Plane& out = results.add(id, impl_->config.width, impl_->config.height);
-    const Plane* in = frame.planes.find(id);
-    for (int c = 0; in && c < out.channels(); ++c)
-      for (int y = 0; y < out.height(); ++y)
-        for (int x = 0; x < out.width(); ++x) out.channel(c).at(x, y) = in->channel(c).at(x, y);
-  }
-  FrameReport report;
-  report.index = frame.index;
-  return report;
+  return impl_->filter(frame, results);
 }
 
-void Denoiser::reset() {}
+void Denoiser::reset() {
+  impl_->scene.reset();
+  impl_->has_past = false;
+}
+
 const DenoiserConfig& Denoiser::config() const { return impl_->config; }
-std::size_t Denoiser::memory_bytes() const { return 0; }
-std::string Denoiser::plan_text() const { return {}; }
+
+std::size_t Denoiser::memory_bytes() const {
+  std::size_t sum = impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
+  for (const Guides& g : impl_->guides) sum += g.depth_normal.bytes() + g.id.bytes();
+  for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
+  return sum;
+}
+
+std::string Denoiser::plan_text() const { return impl_->plan.text(); }
 
 const std::vector<std::string>& recipe_names() {
-  static const std::vector<std::string> names{"spatial", "traditional", "clamp",
-                                              "svgf",    "paper",       "reliable"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const Recipe& recipe : all_recipes()) out.push_back(recipe.name);
+    return out;
+  }();
   return names;
 }
+
 const std::vector<std::string>& preset_names() {
   static const std::vector<std::string> names{"balanced"};
   return names;
 }
 
 std::vector<PlaneId> result_planes(const DenoiserConfig& config) {
-  std::vector<PlaneId> out{{PlaneKind::kComposite, {}}};
-  for (const PlaneId id : config.planes)
-    if (id.kind == PlaneKind::kVisibility || id.kind == PlaneKind::kGlossy ||
-        id.kind == PlaneKind::kIndirect)
-      out.push_back(id);
+  std::vector<PlaneId> out;
+  for (const PlaneId id : config.planes) {
+    if (id.kind != PlaneKind::kVisibility && id.kind != PlaneKind::kGlossy &&
+        id.kind != PlaneKind::kIndirect)
+      continue;
+    out.push_back(id);
+    if (!config.debug_planes) continue;
+    const Component component =
+        id.kind == PlaneKind::kVisibility ? id.component
+        : id.kind == PlaneKind::kGlossy   ? Component{ComponentKind::kGlossy, 0}
+                                          : Component{ComponentKind::kIndirect, 0};
+    for (const PlaneKind kind :
+         {PlaneKind::kDebugMotion, PlaneKind::kDebugHistory, PlaneKind::kDebugConfidence})
+      out.push_back({kind, component});
+  }
+  out.push_back({PlaneKind::kComposite, {}});
   return out;
 }
 

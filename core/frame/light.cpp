@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 namespace holdfast {
 namespace {
@@ -21,22 +19,12 @@ std::optional<LightShape> light_shape_from_name(std::string_view name) {
   return static_cast<LightShape>(it - kShapeNames.begin());
 }
 
-glm::dvec4 light_point(const Light& light, double u, double v) {
-  const double phi = 2 * std::numbers::pi * v;
-  const double r = light.radius * std::sqrt(std::max(u, 0.0));
-  switch (light.shape) {
-    case LightShape::kRectangle: return {(u - 0.5) * light.width, (v - 0.5) * light.height, 0, 1};
-    case LightShape::kDisk: return {r * std::cos(phi), r * std::sin(phi), 0, 1};
-    case LightShape::kSphere: {
-      const double z = 1 - 2 * u;
-      const double s = light.radius * std::sqrt(std::max(0.0, 1 - z * z));
-      return {s * std::cos(phi), s * std::sin(phi), light.radius * z, 1};
-    }
-    case LightShape::kPoint: return {0, 0, 0, 1};
-    case LightShape::kDirectional:
-      return {glm::normalize(glm::dvec3(r * std::cos(phi), r * std::sin(phi), 1)), 0};
-  }
-  return {0, 0, 0, 1};
+glm::dmat3 light_half_axes(const Light& light) {
+  glm::dvec3 half(light.radius, light.radius, 0);
+  if (light.shape == LightShape::kRectangle) half = {light.width / 2, light.height / 2, 0};
+  if (light.shape == LightShape::kSphere) half.z = light.radius;
+  if (light.shape == LightShape::kPoint) half = glm::dvec3(0);
+  return {half.x, 0, 0, 0, half.y, 0, 0, 0, half.z};
 }
 
 }  // namespace holdfast

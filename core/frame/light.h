@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -29,6 +31,29 @@ std::optional<LightShape> light_shape_from_name(std::string_view name);
 ///   sphere       z = 1 - 2u, azimuth 2 pi v, times radius
 ///   point        the origin
 ///   directional  direction (radius sqrt(u) cos 2 pi v, radius sqrt(u) sin 2 pi v, 1), normalised
-glm::dvec4 light_point(const Light& light, double u, double v);
+template <class T>
+glm::vec<4, T> light_point(const Light& light, T u, T v) {
+  const T phi = T(2 * std::numbers::pi) * v;
+  const T radius = T(light.radius);
+  const T r = radius * std::sqrt(u > T(0) ? u : T(0));
+  switch (light.shape) {
+    case LightShape::kRectangle:
+      return {(u - T(0.5)) * T(light.width), (v - T(0.5)) * T(light.height), T(0), T(1)};
+    case LightShape::kDisk: return {r * std::cos(phi), r * std::sin(phi), T(0), T(1)};
+    case LightShape::kSphere: {
+      const T z = T(1) - T(2) * u;
+      const T s = z * z < T(1) ? radius * std::sqrt(T(1) - z * z) : T(0);
+      return {s * std::cos(phi), s * std::sin(phi), radius * z, T(1)};
+    }
+    case LightShape::kPoint: return {T(0), T(0), T(0), T(1)};
+    case LightShape::kDirectional:
+      return {glm::normalize(glm::vec<3, T>(r * std::cos(phi), r * std::sin(phi), T(1))), T(0)};
+  }
+  return {T(0), T(0), T(0), T(1)};
+}
+
+/// The light's half axes in light space, metres: half the width and height of a rectangle, the
+/// radius along each axis that a disk, sphere or sun extends in, 0 for a point.
+glm::dmat3 light_half_axes(const Light& light);
 
 }  // namespace holdfast

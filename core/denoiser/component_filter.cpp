@@ -1,0 +1,164 @@
+#include "core/denoiser/component_filter.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/kernels/math.h"
+#include "core/kernels/parallel.h"
+#include "core/spatial/svgf_filter.h"
+
+namespace holdfast {
+namespace {
+
+// Channels of Scratch::measured and Scratch::means.
+constexpr int kLuminance = 0;
+constexpr int kSquare = 1;
+constexpr int kSampleVariance = kSquare;  // of the means, once they are final
+constexpr int kField = 2;                 // the channels of a shadow field
+constexpr int kMeasured = kField + int{kShadowFieldChannels};
+
+constexpr int kStatisticsStep = 3;  // 9x9 window, tiled exactly
+
+// A signal without noise still gets a variance, relative to its square, so that ratios of variances
+// stay finite.
+constexpr float kRelativeVarianceFloor = 1e-4f;
+constexpr float kVarianceFloor = 1e-20f;
+
+}  // namespace
+
+Scratch::Scratch(int width, int height, bool any_radiance, bool any_shadow, bool with_blend,
+                 bool with_debug)
+    : noisy(width, height, any_radiance ? 3 : 1),
+      measured(width, height, any_shadow ? kMeasured : kField),
+      means(width, height, any_shadow ? kMeasured : kField),
+      window(width, height),
+      filter(width, height) {
+  if (any_shadow) {
+    footprint = Channels<float>(width, height, 3);
+    shadow = ShadowHistory(width, height);
+  }
+  if (with_blend) blend = BlendScratch(width, height);
+  if (with_debug) debug = Channels<float>(width, height, kDebugChannels);
+}
+
+std::size_t Scratch::bytes() const {
+  return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() +
+         shadow.taps.bytes() + shadow.motion.bytes() + window.between.bytes() +
+         window.spread.bytes() + blend.bytes() + filter.bytes() + debug.bytes();
+}
+
+ComponentFilter::ComponentFilter(Component component, const Recipe& recipe, int width, int height)
+    : component_(component),
+      recipe_(recipe),
+      channels_(component.kind == ComponentKind::kVisibility ? 1 : 3),
+      row_samples_(static_cast<std::size_t>(height)),
+      row_pixels_(static_cast<std::size_t>(height)) {
+  for (auto& history : history_)
+    history = ComponentHistory(width, height, channels_, recipe.svgf_filter);
+}
+
+void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& out) {
+  now_ = 1 - now_;
+  std::optional<ShadowTracer> tracer;
+  if (input.light != nullptr)
+    tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
+  measure(input, tracer ? &*tracer : nullptr, scratch);
+
+  const bool with_shadow = tracer && input.surface != nullptr && uses_shadow_vectors();
+  if (with_shadow) {
+    const auto rule = recipe_.vectors == HistoryVectors::kPaperShadow ? ShadowRule::kPaper
+                                                                      : ShadowRule::kBorrowed;
+    const Channels<float>& means = scratch.means;
+    trace_shadow_history(input.frames, *tracer, rule, means[kField + kShadowValid],
+                         means[kField + kShadowRatio],
+                         std::as_const(scratch.measured)[kField + kShadowRatio], scratch.shadow);
+  }
+  blend(input, with_shadow, scratch);
+  filter(input, tracer.has_value(), scratch, out);
+  count_history(input.frames.now);
+}
+
+void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* tracer,
+                              Scratch& s) const {
+  const int width = input.frames.now.view.width, height = input.frames.now.view.height;
+  const Signal noisy{&s.noisy, channels_, {}, {}};
+  for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const float l = noisy.luminance_at(x, y);
+      s.measured[kLuminance].at(x, y) = l;
+      s.measured[kSquare].at(x, y) = l * l;
+    }
+  });
+  if (tracer != nullptr) tracer->measure(s.measured, kField);
+  window_means(input.frames.now, s.measured, tracer != nullptr ? kMeasured : kField,
+               kStatisticsStep, s.window, s.means);
+  for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const float mean_square = square(s.means[kLuminance].at(x, y));
+      s.means[kSampleVariance].at(x, y) =
+          std::max(s.means[kSquare].at(x, y) - mean_square,
+                   kRelativeVarianceFloor * mean_square + kVarianceFloor);
+      if (tracer == nullptr) continue;
+      const float valid = s.means[kField + kShadowValid].at(x, y);
+      for (int c = 0; c < 3; ++c)
+        s.footprint[c].at(x, y) =
+            valid > 0.0f ? s.means[kField + kShadowPrecision + c].at(x, y) / valid : 0.0f;
+    }
+  });
+}
+
+void ComponentFilter::blend(const ComponentInput& input, bool with_shadow, Scratch& s) {
+  const HistorySources sources{
+      recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
+      with_shadow ? &s.shadow : nullptr};
+  const ComponentHistory& before = history_[1 - now_];
+  ComponentHistory& now = history_[now_];
+  Channels<float>* debug = s.debug ? &s.debug : nullptr;
+  if (recipe_.vectors == HistoryVectors::kCandidates && sources.surface != nullptr) {
+    const ExpectedErrorRule& rule =
+        channels_ == 1 ? recipe_.visibility_blend : recipe_.radiance_blend;
+    blend_by_expected_error(input.frames.now, s.noisy, sources,
+                            std::as_const(s.means)[kSampleVariance], rule, before, s.blend,
+                            s.window, now, debug);
+  } else {
+    accumulate(input.frames.now, s.noisy, sources, recipe_.accumulation, before, now, debug);
+  }
+}
+
+void ComponentFilter::filter(const ComponentInput& input, bool with_footprint, Scratch& s,
+                             Plane& out) {
+  ComponentHistory& now = history_[now_];
+  const Signal signal{&now.data, channels_, std::as_const(now).samples(),
+                      std::as_const(s.means)[kSampleVariance],
+                      with_footprint ? &s.footprint : nullptr};
+  if (recipe_.svgf_filter) {
+    const ComponentHistory& moments = now;
+    svgf_filter(input.frames.now, signal, moments.moment(1), moments.moment(2),
+                recipe_.svgf_levels, s.filter, now.data, out);
+  } else {
+    adaptive_filter(input.frames.now, signal,
+                    channels_ == 1 ? recipe_.visibility_filter : recipe_.radiance_filter, s.filter,
+                    out);
+  }
+}
+
+void ComponentFilter::count_history(const Guides& now) {
+  const ComponentHistory& history = history_[now_];
+  for_each_row(now.view.height, [&](int y) {
+    double samples = 0, pixels = 0;
+    for (int x = 0; x < now.view.width; ++x) {
+      if (!(now.depth().at(x, y) > 0.0f)) continue;
+      samples += static_cast<double>(history.samples().at(x, y));
+      pixels += 1;
+    }
+    row_samples_[static_cast<std::size_t>(y)] = samples;
+    row_pixels_[static_cast<std::size_t>(y)] = pixels;
+  });
+  const double pixels = std::accumulate(row_pixels_.begin(), row_pixels_.end(), 0.0);
+  const double samples = std::accumulate(row_samples_.begin(), row_samples_.end(), 0.0);
+  mean_history_frames_ = pixels > 0 ? samples / pixels : 0;
+}
+
+}  // namespace holdfast

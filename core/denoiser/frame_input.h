@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/frame/guides.h"
+
+namespace holdfast {
+
+/// The one place where values from outside enter the core. What cannot be used is repaired, and
+/// each function returns how many values that were.
+
+/// Largest radiance that enters; larger values are repaired to it. Its square is still a float far
+/// from overflow when a window of it is summed.
+inline constexpr float kLargestRadiance = 1e15f;
+
+/// Depth, normals and ids of a frame into `out` (whose view is set by the caller). A depth that is
+/// not finite or not positive is no surface: that is how sky is sent, and only NaN counts as
+/// repaired. A normal that is not finite or of zero length is repaired to face the camera.
+std::uint64_t load_depth(const Plane& depth, Guides& out);
+std::uint64_t load_normals(const Plane& normal, Guides& out);
+void load_ids(const Plane* ids, Guides& out);
+
+/// A component's plane into `out`. Negative or non-finite values become 0 (visibility: 1, nothing is
+/// known to block), too large ones kLargestRadiance.
+std::uint64_t load_signal(const Plane& plane, Channels<float>& out);
+
+}  // namespace holdfast

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "core/frame/frame.h"
+#include "core/frame/view_geometry.h"
+
+namespace holdfast {
+
+/// How one rigid object moved, between camera-relative points of the current and of the previous
+/// frame. Matrices are composed in double; `T` is the type they are applied in.
+template <class T>
+struct ObjectMotion {
+  glm::mat<3, 3, T> rotate{1};       ///< previous normal = rotate * current normal, then normalise
+  glm::mat<4, 4, T> carry{1};        ///< previous relative point from current relative point
+  glm::mat<4, 4, T> prev_pixel{1};   ///< (x w, y w, depth, w) of the previous frame from the
+                                     ///< current relative point
+  bool at_rest = false;              ///< object and camera both stand still: motion is exactly 0
+  bool traceable = true;             ///< false for a singular transform: nothing corresponds
+};
+
+/// Follows cameras, objects and lights from frame to frame and answers where a point was before.
+/// A frame's tables list only what moved; this class remembers the rest.
+class SceneMotion {
+ public:
+  /// Takes the next frame's camera and tables. Throws InputError (state unchanged) for a matrix
+  /// that is not finite, a singular camera, or a light id that `known_lights` lacks.
+  void advance(const Frame& frame, int width, int height, const std::vector<Light>& known_lights);
+
+  /// Forgets the past: the next frame counts as the first.
+  void reset();
+
+  const ViewGeometry& view() const { return view_; }
+  const ViewGeometry& previous_view() const { return previous_view_; }
+
+  /// Motion of the slot that `slot_of` names; slot 0 is the static world.
+  const ObjectMotion<float>& object(int slot) const {
+    return objects_[static_cast<std::size_t>(slot)];
+  }
+  int slot_of(std::uint32_t object_id) const;
+  int slot_count() const { return static_cast<int>(objects_.size()); }
+  /// True when camera and all objects stand still.
+  bool geometry_at_rest() const { return geometry_at_rest_; }
+
+  /// Camera-relative world_from_light now and one frame ago. Identity at the world's origin if no
+  /// frame has placed the light.
+  struct LightMotion {
+    glm::dmat4 relative_from_light{1}, previous_relative_from_light{1};
+    bool at_rest = true;  ///< in the world
+  };
+  LightMotion light(std::uint32_t light_id) const;
+
+ private:
+  struct Track {
+    glm::dmat4 now{1}, before{1};
+  };
+  static void follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved, bool first);
+  ObjectMotion<float> compose(const Track& track) const;
+
+  std::map<std::uint32_t, Track> object_tracks_, light_tracks_;
+  ViewGeometry view_, previous_view_;
+  glm::dmat4 view_matrix_{1}, clip_matrix_{1};
+  bool camera_at_rest_ = false, geometry_at_rest_ = false, has_past_ = false;
+  std::vector<std::uint32_t> slot_ids_;  ///< sorted; slot k + 1 belongs to slot_ids_[k]
+  std::vector<ObjectMotion<float>> objects_;
+};
+
+}  // namespace holdfast

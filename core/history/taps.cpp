@@ -1,0 +1,105 @@
+#include "core/history/taps.h"
+
+#include <cmath>
+
+namespace holdfast {
+namespace {
+
+/// Tests previous pixels against one receiver.
+class TapTest {
+ public:
+  TapTest(const Guides& previous, const Receiver& receiver)
+      : previous_(previous),
+        receiver_(receiver),
+        plane_(glm::dot(receiver.normal, receiver.point)),
+        angle_(static_cast<float>(previous.view.pixel_angle)) {}
+
+  bool operator()(int x, int y) const {
+    if (x < 0 || y < 0 || x >= previous_.view.width || y >= previous_.view.height) return false;
+    const float depth = previous_.depth().at(x, y);
+    if (!(depth > 0.0f) || previous_.id[0].at(x, y) != receiver_.id) return false;
+    const float distance = glm::dot(receiver_.normal, previous_.position_at(x, y)) - plane_;
+    const PixelRays<float>& rays = previous_.rays;
+    const float footprint = angle_ * (rays.near_weight + rays.far_weight * depth);
+    return std::abs(distance) <= kTapPlaneTolerancePx * footprint &&
+           glm::dot(receiver_.normal, previous_.normal_at(x, y)) >= kTapNormalCosine;
+  }
+
+ private:
+  const Guides& previous_;
+  const Receiver& receiver_;
+  float plane_, angle_;
+};
+
+/// The corner of the 2x2 block that holds tap column or row `t`, moved inside the image.
+int block_start(int t, int size) { return t < 0 ? 0 : (t > size - 2 ? (size > 1 ? size - 2 : 0) : t); }
+
+}  // namespace
+
+Taps identity_taps(const Guides& previous, int x, int y) {
+  const int bx = block_start(x, previous.view.width), by = block_start(y, previous.view.height);
+  Taps taps;
+  taps.offset = static_cast<std::int32_t>(by * previous.depth().stride + bx);
+  taps.weight[2 * (y - by) + (x - bx)] = 1.0f;
+  return taps;
+}
+
+namespace {
+
+template <class Valid>
+Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid) {
+  const int width = previous.view.width, height = previous.view.height;
+  // Beyond one pixel outside, no tap can be inside; also keeps the conversion to int in range.
+  if (!(x > -1.0f && y > -1.0f && x < static_cast<float>(width + 1) &&
+        y < static_cast<float>(height + 1)))
+    return {};
+  const float cx = x - 0.5f, cy = y - 0.5f;
+  const int ix = static_cast<int>(std::floor(cx)), iy = static_cast<int>(std::floor(cy));
+  const float fx = cx - static_cast<float>(ix), fy = cy - static_cast<float>(iy);
+
+  Taps taps;
+  const int bx = block_start(ix, width), by = block_start(iy, height);
+  taps.offset = static_cast<std::int32_t>(by * previous.depth().stride + bx);
+  float sum = 0;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const float w = (i ? fx : 1.0f - fx) * (j ? fy : 1.0f - fy);
+      if (w < 1e-3f || !valid(ix + i, iy + j)) continue;
+      taps.weight[2 * (iy + j - by) + (ix + i - bx)] += w;
+      sum += w;
+    }
+  if (sum > 0.01f) {
+    for (float& w : taps.weight) w /= sum;
+    return taps;
+  }
+
+  // Rescue: the valid pixel of the 3x3 neighbourhood that is nearest to (x, y).
+  const int nx = static_cast<int>(std::floor(x)), ny = static_cast<int>(std::floor(y));
+  float best = 1e9f;
+  int best_x = 0, best_y = 0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i) {
+      const float dx = static_cast<float>(nx + i) - cx, dy = static_cast<float>(ny + j) - cy;
+      const float distance = dx * dx + dy * dy;
+      if (distance >= best || !valid(nx + i, ny + j)) continue;
+      best = distance;
+      best_x = nx + i;
+      best_y = ny + j;
+    }
+  return best < 1e9f ? identity_taps(previous, best_x, best_y) : Taps{};
+}
+
+}  // namespace
+
+Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver) {
+  return bilinear_taps(previous, x, y, TapTest(previous, receiver));
+}
+
+Taps find_taps_on_any_surface(const Guides& previous, float x, float y) {
+  return bilinear_taps(previous, x, y, [&](int tx, int ty) {
+    return tx >= 0 && ty >= 0 && tx < previous.view.width && ty < previous.view.height &&
+           previous.depth().at(tx, ty) > 0.0f;
+  });
+}
+
+}  // namespace holdfast

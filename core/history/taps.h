@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/frame/guides.h"
+
+namespace holdfast {
+
+/// Bilinear history taps of one pixel: four weights at `offset + {0, dx, dy, dx + dy}` of any
+/// channel of the session's size. The weights sum to 1, or to 0 where there is no history.
+struct Taps {
+  std::int32_t offset = 0;
+  float weight[4] = {0, 0, 0, 0};
+
+  bool any() const { return weight[0] + weight[1] + weight[2] + weight[3] > 0.0f; }
+};
+
+/// What a history pixel must show to count as the same receiver one frame ago.
+struct Receiver {
+  glm::vec3 point;     ///< relative to the previous camera, metres
+  glm::vec3 normal;    ///< unit, previous frame
+  std::uint32_t id;
+};
+
+/// Rules of tap validity.
+inline constexpr float kTapPlaneTolerancePx = 2.0f;  // footprints off the receiver's plane; ours
+inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
+
+/// Finds taps around previous pixel position (x, y): the 2x2 bilinear neighbourhood, each tap
+/// tested on its own (inside the image, same id, on the receiver's plane, similar normal) and
+/// renormalised; else the nearest valid tap of the 3x3 neighbourhood; else none.
+Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver);
+
+/// The same, where any surface inside the image is valid.
+Taps find_taps_on_any_surface(const Guides& previous, float x, float y);
+
+/// Taps at pixel (x, y) itself, weight 1.
+Taps identity_taps(const Guides& previous, int x, int y);
+
+/// The weighted value of a channel at `taps`.
+inline float gather(ChannelView<const float> channel, const Taps& taps) {
+  const int dx = channel.width > 1 ? 1 : 0;
+  const std::ptrdiff_t dy = channel.height > 1 ? channel.stride : 0;
+  const float* p = channel.data + taps.offset;
+  return taps.weight[0] * p[0] + taps.weight[1] * p[dx] + taps.weight[2] * p[dy] +
+         taps.weight[3] * p[dy + dx];
+}
+
+}  // namespace holdfast

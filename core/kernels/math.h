@@ -1,0 +1,63 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+/// Inlined into every instruction-set variant of a kernel.
+#define HOLDFAST_INLINE inline __attribute__((always_inline))
+
+namespace holdfast {
+
+/// exp(x) for x <= 0. In float: 2^i * p(f) with a polynomial of degree 5 for 2^f on [-1/2, 1/2],
+/// relative error below 3e-7, 0 below about -87. In double: std::exp.
+/// Branch-free, so that loops that call it vectorise. NaN gives an unspecified finite value.
+template <class T>
+HOLDFAST_INLINE T exp_nonpositive(T x) noexcept {
+  if constexpr (std::is_same_v<T, float>) {
+    constexpr float kLog2E = 1.44269504f;
+    constexpr float kSmallest = 1.17549435e-38f;  // 2^-126
+    const float t = x * kLog2E > -126.0f ? x * kLog2E : -126.0f;
+    const int i = static_cast<int>(t - 0.5f);
+    const float f = t - static_cast<float>(i);
+    float p = 1.3333558e-3f;  // Taylor coefficients ln(2)^k / k!
+    p = p * f + 9.6181291e-3f;
+    p = p * f + 5.5504109e-2f;
+    p = p * f + 2.4022651e-1f;
+    p = p * f + 6.9314718e-1f;
+    p = p * f + 1.0f;
+    const float scale = std::bit_cast<float>((i + 127) << 23);
+    return p * scale - kSmallest;  // exactly 0 where t was clamped
+  } else {
+    return std::exp(x);
+  }
+}
+
+/// Rec. 709 luminance of a linear colour.
+template <class T>
+HOLDFAST_INLINE T luminance(T r, T g, T b) noexcept {
+  return T(0.2126) * r + T(0.7152) * g + T(0.0722) * b;
+}
+
+template <class T>
+HOLDFAST_INLINE T max_of(T a, T b) noexcept {
+  return a > b ? a : b;
+}
+
+template <class T>
+HOLDFAST_INLINE T min_of(T a, T b) noexcept {
+  return a < b ? a : b;
+}
+
+template <class T>
+HOLDFAST_INLINE T abs_of(T a) noexcept {
+  return a < T(0) ? -a : a;
+}
+
+template <class T>
+HOLDFAST_INLINE T square(T a) noexcept {
+  return a * a;
+}
+
+}  // namespace holdfast

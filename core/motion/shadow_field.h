@@ -1,0 +1,68 @@
+#pragma once
+
+#include "core/frame/guides.h"
+#include "core/frame/scene_motion.h"
+
+namespace holdfast {
+
+/// The planes of one light that say what blocks it.
+struct BlockerPlanes {
+  const Plane* distance = nullptr;  ///< metres from the surface, +inf = not blocked
+  const Plane* sample = nullptr;    ///< (u, v) on the light
+  const Plane* id = nullptr;        ///< instance of the blocker; null: blockers are static
+
+  explicit operator bool() const { return distance != nullptr && sample != nullptr; }
+};
+
+/// Channels of a shadow field. All are 0 where the light sample is not blocked or cannot be
+/// followed, so that local means of the channels, divided by that of kShadowValid, are means over
+/// the blocked samples nearby: borrowed blockers, in the spirit of the search of PCSS.
+///   kShadowValid      1
+///   kShadowRatio      distance of the blocker over that of the light sample, 0..1; for a
+///                     directional light the distance of the blocker in metres
+///   kShadowPrecision  E, F, G in 1 / px^2: the penumbra's footprint, half the inverse covariance of
+///                     the light's shape as the blocker casts it on the receiver's plane, in pixels
+enum ShadowFieldChannel {
+  kShadowValid,
+  kShadowRatio,
+  kShadowPrecision,
+  kShadowFieldChannels = kShadowPrecision + 3
+};
+
+/// One light of one frame: measures its shadows and follows them to the previous frame.
+class ShadowTracer {
+ public:
+  /// All references must outlive the tracer. `scene` has taken the frame that `now` shows.
+  ShadowTracer(const Guides& now, const SceneMotion& scene, const Light& light,
+               const BlockerPlanes& planes);
+
+  /// Measures the blocked samples of every pixel into channels first.. of `out`.
+  ///   reads guides, blocker planes | writes `out` | halo 0
+  void measure(Channels<float>& out, int first) const;
+
+  /// The previous pixel of the shadow at (x, y) by its own blocked sample, whose kShadowRatio is
+  /// `ratio`. `in_front` is false where it cannot be followed.
+  PixelPoint<float> follow_own(int x, int y, float ratio) const;
+
+  /// The same for a borrowed blocker: at `ratio` of the way to the light's centre, moving with the
+  /// nearest blocked sample.
+  PixelPoint<float> follow_borrowed(int x, int y, float ratio) const;
+
+ private:
+  PixelPoint<float> follow(int x, int y, float ratio, float u, float v, int occluder_slot) const;
+  bool blocked(int x, int y) const;
+  int nearest_blocker_slot(int x, int y) const;
+  glm::vec3 penumbra_precision(const glm::vec3& point, const glm::vec3& normal,
+                               const glm::vec3& towards, float tau) const;
+
+  const Guides& now_;
+  const SceneMotion& scene_;
+  const Light& light_;
+  ChannelView<const float> distance_, u_, v_;
+  const Plane* id_;
+  glm::mat4 relative_from_light_, previous_relative_from_light_;
+  glm::mat3 half_axes_;
+  glm::mat4 pixel_, previous_pixel_;
+};
+
+}  // namespace holdfast

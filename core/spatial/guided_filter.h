@@ -1,0 +1,66 @@
+#pragma once
+
+#include "core/frame/guides.h"
+
+/// One pass of an edge-stopping filter with holes (a-trous) over up to kMaxFilterChannels signals.
+///
+///   reads   guides, signals, variance and luminance (optional)
+///   writes  filtered signals, filtered variance (optional)
+///   halo    radius * step pixels; taps outside the image are left out
+///   state   none
+namespace holdfast {
+
+inline constexpr int kMaxFilterChannels = 7;
+
+/// Weights of a pass. A tap q of pixel p counts
+///   g(q) = h(q) exp(-(|plane distance| / (plane_sigma_px * step * footprint)
+///                    + normal_power (1 - n_p . n_q)
+///                    + |l_p - l_q| inverse_luminance_sigma_p
+///                    + E_p dx^2 + 2 F_p dx dy + G_p dy^2))
+/// where the plane distance is that of q's surface point from p's tangent plane and the footprint
+/// is the width of a pixel at p's depth. exp(-k (1 - x)) stands for SVGF's x^k (they agree to first
+/// order at x = 1), so that all terms share one exponential.
+struct FilterWeights {
+  int radius = 2;                                              ///< 1: 3x3 taps, 2: 5x5 taps
+  float kernel[3] = {3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  ///< 1-D weights by |offset|
+  float plane_sigma_px = 1.0f;
+  float normal_power = 128.0f;  ///< >= 88, so that taps without surface vanish; SVGF sec. 4.3
+};
+
+/// What the spread channel of a pass holds.
+enum class Spread {
+  kVariance,  ///< variance v: out = sum g in / sum g,  v' = sum g^2 v / (sum g)^2 (SVGF eq. 5)
+  kSamples,   ///< number of equal samples N behind each pixel, > 0, which also weighs it:
+              ///< out = sum g N in / sum g N,  N' = (sum g N)^2 / sum g^2 N
+};
+
+/// The pass of one row. All images share size and stride. Pixels without surface (depth 0) copy
+/// their inputs; taps without surface have weight 0.
+struct FilterRow {
+  const Guides* guides = nullptr;
+  FilterWeights weights;
+  int y = 0;
+  int step = 1;
+  int channels = 0;  ///< 1..kMaxFilterChannels
+  ChannelView<const float> in[kMaxFilterChannels];
+  ChannelView<float> out[kMaxFilterChannels];
+  Spread spread = Spread::kVariance;
+  ChannelView<const float> spread_in;
+  ChannelView<float> spread_out;
+  /// Edge-stopping luminance, and per pixel 1 / luminance_sigma. Both or neither.
+  ChannelView<const float> luminance;
+  ChannelView<const float> inverse_luminance_sigma;
+  /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
+  ChannelView<const float> footprint[3];
+};
+
+/// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
+/// uses: without luminance, 1 channel with kSamples (with or without footprint), or 1, 2, 3 or 7
+/// channels with kVariance; with luminance, 1 or 3 channels with either spread, and 1 channel with
+/// kSamples and footprint. Asserts that the combination is one of these.
+void filter_row(const FilterRow& row) noexcept;
+
+/// Runs `row` for every y of the image, in parallel. Inputs and outputs must not overlap.
+void filter_image(const FilterRow& row);
+
+}  // namespace holdfast
