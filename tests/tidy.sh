@@ -6,13 +6,13 @@ set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 deploy/install.sh --tools
 
-# Without ccache, whose command line clang-tidy would not understand; generated protocol headers
-# must exist before anything that includes them can be parsed.
-cmake --preset dev -DHOLDFAST_CCACHE= >/dev/null
-if cmake --build --preset dev --target help | grep -q '^holdfast_proto:'; then
-  cmake --build --preset dev --target holdfast_proto
+# A build folder of its own: clang-tidy does not understand a command line that starts with ccache.
+cmake --preset dev -B build/tidy -DHOLDFAST_CCACHE= >/dev/null
+# Generated protocol headers must exist before anything that includes them can be parsed.
+if cmake --build build/tidy --target help | grep -q '^holdfast_proto:'; then
+  cmake --build build/tidy --target holdfast_proto
 fi
 
 patterns=("$@")
 ((${#patterns[@]})) || patterns=("$PWD/(core|server|client|tests)/")
-run-clang-tidy -quiet -p build/dev -j "$(nproc)" "${patterns[@]}"
+run-clang-tidy -quiet -p build/tidy -j "$(nproc)" "${patterns[@]}"
