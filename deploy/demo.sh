@@ -49,9 +49,8 @@ echo "demo.sh: 2 of 3, build (the first one takes some minutes)"
 echo "demo.sh: 3 of 3, demonstration"
 "$repository/build/release/bin/holdfast" demo -o "$output" "${arguments[@]}"
 
-report=$(cd -- "$output" && pwd)/report.html
-if [[ ! -f $report ]]; then
-  echo "demo.sh: holdfast demo ended well but wrote no $report" >&2
+if [[ ! -f $output/report.html ]]; then
+  echo "demo.sh: holdfast demo ended well but wrote no $output/report.html" >&2
   exit 1
 fi
-echo "demo.sh: the report is $report"
+echo "demo.sh: the report is $(cd -- "$output" && pwd)/report.html"
