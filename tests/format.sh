@@ -13,7 +13,7 @@ case ${1:-} in
     ;;
 esac
 
-mapfile -t files < <(find core server client tests -path '*/generated' -prune -o \
+mapfile -t files < <(find core proto server client tests -path '*/generated' -prune -o \
   \( -name '*.h' -o -name '*.cpp' \) -print | sort)
 ((${#files[@]})) || { echo "format.sh: found no C++ files" >&2; exit 1; }
 clang-format "${action[@]}" "${files[@]}"

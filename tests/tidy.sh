@@ -14,5 +14,5 @@ if cmake --build build/tidy --target help | grep -q '^holdfast_proto:'; then
 fi
 
 patterns=("$@")
-((${#patterns[@]})) || patterns=("$PWD/(core|server|client|tests)/")
+((${#patterns[@]})) || patterns=("$PWD/(core|proto|server|client|tests)/")
 run-clang-tidy -quiet -p build/tidy -j "$(nproc)" "${patterns[@]}"

@@ -27,7 +27,7 @@ foreach(folder core proto server client)
 endforeach()
 
 file(GLOB_RECURSE house_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-  ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/server/*.h
+  ${PROJECT_SOURCE_DIR}/core/*.h ${PROJECT_SOURCE_DIR}/proto/*.h ${PROJECT_SOURCE_DIR}/server/*.h
   ${PROJECT_SOURCE_DIR}/client/*.h ${PROJECT_SOURCE_DIR}/tests/*.h)
 
 set(house_units)

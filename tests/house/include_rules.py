@@ -1,6 +1,7 @@
 """Who may include what.
 
     core      the standard library, GLM, oneTBB and core/; between its folders, CORE_LAYERS
+    proto     of the project, only core/frame/ and itself: both ends of the wire share it
     server    never client/
     client    never server/, but for the one file that embeds a server in the command line
     all       files of the project by their path from its top, in quotes; only tests include tests/
@@ -40,7 +41,7 @@ STANDARD_HEADERS = set(
 # The only file of client/ that knows the server, and the only file of server/ that it knows.
 EMBEDDING = ("client/cli/embedded_server.cpp", "server/embedded.h")
 
-CODE_FOLDERS = ("core", "server", "client", "tests")
+CODE_FOLDERS = ("core", "proto", "server", "client", "tests")
 CODE_SUFFIXES = (".h", ".cpp", ".cu")
 OWN_FOLDERS = tuple(f"{folder}/" for folder in CODE_FOLDERS)
 GENERATED_PROTOCOL = re.compile(r"holdfast/v\d+/\w+(\.grpc)?\.pb\.h")
@@ -76,6 +77,8 @@ def _messages(tree, path, what):
         messages.append(f"{included}: only tests include tests")
     if path.startswith("core/"):
         messages += _core_messages(path, included, quoted)
+    if path.startswith("proto/") and quoted and not included.startswith(("proto/", "core/frame/")):
+        messages.append(f"{included}: proto includes of ours only core/frame/")
     if path.startswith("server/") and included.startswith("client/"):
         messages.append(f"{included}: the server never includes the client")
     if path.startswith("client/") and included.startswith("server/"):

@@ -75,6 +75,15 @@ class Includes(RulesTest):
         self.write("core/frame/plane.h")
         self.refused("core/magic/a.h", '#include "core/frame/plane.h"', "no place in CORE_LAYERS")
 
+    def test_proto_knows_the_frame_and_nothing_else_of_ours(self):
+        self.write("core/frame/plane.h")
+        self.write("core/denoiser/denoiser.h")
+        self.write("server/session.h")
+        self.allowed("proto/bytes.h", '#include "core/frame/plane.h"')
+        self.refused("proto/bytes.h", '#include "core/denoiser/denoiser.h"', "only core/frame/")
+        self.refused("proto/bytes.h", '#include "server/session.h"', "only core/frame/")
+        self.refused("core/frame/a.h", '#include "proto/bytes.h"', "but core/")
+
     def test_server_and_client_never_include_each_other(self):
         self.write("server/session.h")
         self.write("client/sdk/client.h")
@@ -96,6 +105,8 @@ class Includes(RulesTest):
         self.refused("server/a.cpp", "#include <core/frame/plane.h>", "in quotes")
         self.refused("server/a.cpp", '#include "core/frame/missing.h"', "is not there")
         self.allowed("server/a.cpp", '#include "holdfast/v1/frame.grpc.pb.h"')
+        self.write("server/version.h.in")
+        self.allowed("server/a.cpp", '#include "server/version.h"')
 
     def test_unusual_spelling_hides_nothing(self):
         self.write("client/sdk/a.h")

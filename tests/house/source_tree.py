@@ -32,4 +32,5 @@ class SourceTree:
         return (self.root / path).read_text(encoding="utf-8").splitlines()
 
     def exists(self, path):
-        return (self.root / path).is_file()
+        """True for a file of the tree and for one that CMake makes from `path`.in."""
+        return (self.root / path).is_file() or (self.root / f"{path}.in").is_file()
