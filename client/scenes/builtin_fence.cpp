@@ -38,9 +38,9 @@ Scene fence_scene() {
   scene.name = "fence";
   scene.components = {true, false, false};
   scene.sky = {{0.62, 0.66, 0.74}, {0.28, 0.38, 0.58}};
-  scene.ambient = {0.10, 0.13, 0.19};
+  scene.ambient = {0.19, 0.22, 0.29};
   scene.camera.vertical_fov_deg = 36.0;
-  scene.camera.motion = Motion(look_at({0.8, 2.15, 5.0}, {0.0, 0.33, 0.85}));
+  scene.camera.motion = Motion(look_at({0.8, 2.2, 4.8}, {0.02, 0.26, 0.9}));
 
   Part ground;
   ground.shape = PartShape::kQuad;
@@ -55,7 +55,7 @@ Scene fence_scene() {
 
   SceneLight light;
   light.light = {.id = 0, .shape = LightShape::kRectangle, .width = 0.55, .height = 0.35};
-  light.emission = glm::dvec3(390.0, 356.0, 290.0);
+  light.emission = glm::dvec3(760.0, 690.0, 560.0);
   light.motion = swinging_arc();
   scene.lights = {light};
   return scene;

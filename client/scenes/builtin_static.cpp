@@ -30,7 +30,7 @@ Scene static_scene() {
 
   SceneLight light;
   light.light = {.id = 0, .shape = LightShape::kRectangle, .width = 0.55, .height = 0.35};
-  light.emission = glm::dvec3(390.0, 356.0, 290.0);
+  light.emission = glm::dvec3(520.0, 470.0, 380.0);
   light.motion = Motion(look_at({1.6, 3.6, -3.8}, {0.0, 0.3, 0.8}));
   scene.lights = {light};
   return scene;

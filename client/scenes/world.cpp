@@ -37,6 +37,7 @@ RayScene make_mesh_scene(RTCDevice device, const Mesh& mesh) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene.get(), geometry, 0);
   rtcReleaseGeometry(geometry);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(scene.get());
   return scene;
 }
