@@ -170,7 +170,7 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else if (shape == "quad") {
     part.shape = PartShape::kQuad;
     const glm::dvec2 size = vector_or<2>(in, "size", glm::dvec2(1.0));
-    part.size_m = {size.x, 1.0, size.y};
+    part.size_m = {size.x, 0.0, size.y};
   } else if (shape == "sphere") {
     part.shape = PartShape::kSphere;
     part.radius_m = positive_or(in, "radius", part.radius_m);
@@ -184,7 +184,8 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else {
     throw InputError(in.subject("shape"), "must be box, quad, sphere, cylinder or mesh", shape);
   }
-  if (!(part.size_m.x > 0.0 && part.size_m.y > 0.0 && part.size_m.z > 0.0))
+  const double thickness = part.shape == PartShape::kQuad ? 1.0 : part.size_m.y;
+  if (!(part.size_m.x > 0.0 && thickness > 0.0 && part.size_m.z > 0.0))
     throw InputError(in.subject("size"), "must be greater than 0", json_excerpt(in.required("size")));
   part.placement = read_transform(in);
   return part;
