@@ -26,8 +26,7 @@ Scene cylinder_scene() {
   light.motion.keys.clear();
   light.motion.repeat = Repeat::kMirror;
   for (int i = 0; i <= 13; ++i)  // to the left, 4 cm a frame
-    light.motion.keys.push_back(
-        {10.0 * i, look_at({2.6 - 0.4 * i, 3.3, -2.8}, target), false});
+    light.motion.keys.push_back({10.0 * i, look_at({2.6 - 0.4 * i, 3.3, -2.8}, target), false});
   scene.lights = {light};
   return scene;
 }

@@ -15,8 +15,7 @@ Motion swinging_arc() {
   motion.keys.clear();
   motion.repeat = Repeat::kLoop;
   for (int i = 0; i <= kKeys; ++i) {
-    const double phi =
-        -kSwingRad * std::cos(2.0 * std::numbers::pi * (i + 6.0) / kKeys);
+    const double phi = -kSwingRad * std::cos(2.0 * std::numbers::pi * (i + 6.0) / kKeys);
     const glm::dvec3 eye(kRadius_m * std::sin(phi), kHeight_m, -kRadius_m * std::cos(phi));
     motion.keys.push_back({kPeriodFrames * i / kKeys, look_at(eye, {0.0, 0.3, 0.8}), false});
   }

@@ -16,10 +16,10 @@ Scene static_scene() {
                        .checker = Checker{{0.36, 0.33, 0.30}, 0.5},
                        .roughness = 0.35,
                        .specular = glm::dvec3(0.05)};
-  const Material paint{.albedo = {0.16, 0.34, 0.62}, .roughness = 0.3,
-                       .specular = glm::dvec3(0.04)};
-  const Material copper{.albedo = glm::dvec3(0.02), .roughness = 0.25,
-                        .specular = {0.95, 0.64, 0.54}};
+  const Material paint{
+      .albedo = {0.16, 0.34, 0.62}, .roughness = 0.3, .specular = glm::dvec3(0.04)};
+  const Material copper{
+      .albedo = glm::dvec3(0.02), .roughness = 0.25, .specular = {0.95, 0.64, 0.54}};
   scene.objects = {
       still_object(1, "ground", floor, {ground}),
       still_object(2, "fence", {.albedo = {0.72, 0.36, 0.20}}, fence_parts(11, 0.36, 1.05)),

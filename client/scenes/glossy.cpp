@@ -61,8 +61,8 @@ glm::dvec3 specular_factor(const Surface& surface) {
   if (!surface.has_lobe()) return glm::dvec3(0.0);
   const double r = surface.roughness;
   const double nv = std::clamp(glm::dot(surface.normal, surface.to_viewer), 0.0, 1.0);
-  const glm::dvec4 k = r * glm::dvec4(-1.0, -0.0275, -0.572, 0.022) +
-                       glm::dvec4(1.0, 0.0425, 1.04, -0.04);
+  const glm::dvec4 k =
+      r * glm::dvec4(-1.0, -0.0275, -0.572, 0.022) + glm::dvec4(1.0, 0.0425, 1.04, -0.04);
   const double a004 = std::min(k.x * k.x, std::exp2(-9.28 * nv)) * k.x + k.y;
   return glm::max(glm::dvec3(1e-4), surface.specular * (-1.04 * a004 + k.z) + (1.04 * a004 + k.w));
 }

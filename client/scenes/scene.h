@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "client/scenes/motion.h"
 #include "core/frame/light.h"

@@ -1,9 +1,9 @@
 // Planes of a noisy frame against the conventions and against analytic values.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/rng.h"
@@ -17,8 +17,8 @@ namespace {
 /// World position of a pixel's surface from depth and camera alone, as a user of the planes has it.
 glm::dvec3 unproject(const Frame& frame, int x, int y) {
   const auto depth = frame.planes.at({PlaneKind::kDepth, {}}).channel(0);
-  const glm::dvec2 ndc = ndc_from_pixel(glm::dvec2(x + 0.5, y + 0.5), double(depth.width),
-                                        double(depth.height));
+  const glm::dvec2 ndc =
+      ndc_from_pixel(glm::dvec2(x + 0.5, y + 0.5), double(depth.width), double(depth.height));
   const glm::dmat4 view_from_clip = glm::inverse(frame.camera.clip_from_view);
   glm::dvec4 p = view_from_clip * glm::dvec4(ndc, 0.5, 1.0);
   p /= p.w;

@@ -1,9 +1,9 @@
 // Determinism, tables of motion, and references that are kept.
 
+#include <cstring>
+
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
-
-#include <cstring>
 
 #include "core/frame/error.h"
 #include "tests/scenes/small_scenes.h"
@@ -143,8 +143,10 @@ TEST(BuiltinScenes, UnknownNameListsTheNames) {
     builtin_scene("fense");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), ("scene must be a scene JSON file or one of " + std::string("fence, "
-                                "cylinder, static, but it is fense")).c_str());
+    EXPECT_STREQ(error.what(), ("scene must be a scene JSON file or one of " +
+                                std::string("fence, "
+                                            "cylinder, static, but it is fense"))
+                                   .c_str());
   }
 }
 

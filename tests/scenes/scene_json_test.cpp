@@ -1,13 +1,14 @@
 // Scene files: round trip, defaults, and each mistake named.
 
-#include <gtest/gtest.h>
+#include "client/scenes/scene_json.h"
 
 #include <filesystem>
 #include <fstream>
 
+#include <gtest/gtest.h>
+
 #include "client/scenes/builtin.h"
 #include "client/scenes/mesh.h"
-#include "client/scenes/scene_json.h"
 #include "core/frame/error.h"
 
 namespace holdfast::scenes {

@@ -8,7 +8,8 @@
 
 namespace holdfast::scenes {
 
-/// A scene of a floor (id 7), a box (id 9) that floats above it, and one light; a camera looks down.
+/// A scene of a floor (id 7), a box (id 9) that floats above it, and one light; a camera looks
+/// down.
 inline Scene floor_and_box(const Light& light, const glm::dvec3& light_at,
                            const Material& floor = {.albedo = glm::dvec3(0.6)}) {
   Scene scene;
@@ -17,9 +18,9 @@ inline Scene floor_and_box(const Light& light, const glm::dvec3& light_at,
   Part ground;
   ground.shape = PartShape::kQuad;
   ground.size_m = {8.0, 0.0, 8.0};
-  scene.objects = {
-      still_object(7, "floor", floor, {ground}),
-      still_object(9, "box", {.albedo = {0.7, 0.4, 0.2}}, {box_part({0.7, 0.4, 0.5}, {0, 0.5, 0})})};
+  scene.objects = {still_object(7, "floor", floor, {ground}),
+                   still_object(9, "box", {.albedo = {0.7, 0.4, 0.2}},
+                                {box_part({0.7, 0.4, 0.5}, {0, 0.5, 0})})};
   SceneLight out;
   out.light = light;
   out.emission = {9.0, 8.0, 6.0};
@@ -42,10 +43,14 @@ inline RenderSettings small_settings(int width = 40, int height = 30) {
 /// A view of a scene at time 0; holds the world.
 struct StillView {
   explicit StillView(Scene s, int width = 40, int height = 30)
-      : scene(std::move(s)),
-        world(scene),
-        view{scene, world, lights_at(scene, 0.0), camera_at(scene, 0.0, width, height),
-             width, height, 5, 0} {}
+      : scene(std::move(s)), world(scene), view{scene,
+                                                world,
+                                                lights_at(scene, 0.0),
+                                                camera_at(scene, 0.0, width, height),
+                                                width,
+                                                height,
+                                                5,
+                                                0} {}
 
   Scene scene;
   World world;

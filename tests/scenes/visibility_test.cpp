@@ -1,8 +1,8 @@
 // The estimator of visibility: noisy, converged and brute force must agree.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
@@ -114,8 +114,8 @@ TEST(ReferenceVisibility, TimesUnshadowedIsTheBruteForceShadowedLight) {
         if (!still.world.occluded(s.origin, ray.direction, ray.length_m)) shadowed += f;
       }
       const double mine = luminance(LightTarget(light, s).unshadowed());
-      const auto v = static_cast<double>(
-          reference.at(of_light(PlaneKind::kVisibility)).channel(0).at(x, y));
+      const auto v =
+          static_cast<double>(reference.at(of_light(PlaneKind::kVisibility)).channel(0).at(x, y));
       EXPECT_NEAR(mine, unshadowed / (kSide * kSide), 0.01 * mine) << x << ' ' << y;
       EXPECT_NEAR(v * mine, shadowed / (kSide * kSide), 0.015 * mine) << x << ' ' << y;
     }
