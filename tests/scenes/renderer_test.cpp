@@ -143,11 +143,29 @@ TEST(BuiltinScenes, UnknownNameListsTheNames) {
     builtin_scene("fense");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), ("scene must be a scene JSON file or one of " +
-                                std::string("fence, "
-                                            "cylinder, static, but it is fense"))
-                                   .c_str());
+    const std::string message = error.what();
+    for (const BuiltinScene& scene : builtin_scenes())
+      EXPECT_NE(message.find(scene.name), std::string::npos) << message;
+    EXPECT_NE(message.find("fense"), std::string::npos) << message;
   }
+}
+
+TEST(BuiltinScenes, CutSceneCutsSwitchesALightOnAndAddsAnObject) {
+  Renderer renderer(cut_scene(), small_settings(32, 18));
+  EXPECT_TRUE(renderer.frame(30).cut);
+  EXPECT_FALSE(renderer.frame(29).cut);
+  const auto light_of = [&](std::int64_t index) {
+    const Frame frame = renderer.frame(index);
+    const auto red = frame.planes.at(of_light(PlaneKind::kUnshadowed, 1)).channel(0);
+    float sum = 0.0f;
+    for (int y = 0; y < red.height; ++y)
+      for (int x = 0; x < red.width; ++x) sum += red.at(x, y);
+    return sum;
+  };
+  EXPECT_EQ(light_of(59), 0.0f);
+  EXPECT_GT(light_of(60), 1.0f);
+  EXPECT_EQ(renderer.frame(60).lights.count(1), 1u);
+  EXPECT_EQ(renderer.frame(90).objects.count(7), 1u);
 }
 
 TEST(BuiltinScenes, ShadowsMoveInEveryFrameAtBothSpeeds) {
