@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+
 #include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
@@ -103,8 +104,9 @@ void add_render(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("render", "Ray-trace a scene into a sequence, with converged references");
-  command->add_option("scene", options->scene,
-                      "Scene JSON file, or a built-in scene: " + scenes::builtin_scene_names())
+  command
+      ->add_option("scene", options->scene,
+                   "Scene JSON file, or a built-in scene: " + scenes::builtin_scene_names())
       ->required();
   command->add_option("-o,--output", options->out, "Folder of the sequence")->required();
   command->add_option("--frames", options->frames, "Number of frames")
@@ -119,8 +121,9 @@ void add_render(CLI::App& app) {
                    "The same for references, rounded up to a square; 0 = no references")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--reference-every", options->reference_every,
-                      "Render a reference for every K-th frame only")
+  command
+      ->add_option("--reference-every", options->reference_every,
+                   "Render a reference for every K-th frame only")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+
 #include <glm/glm.hpp>
 
 #include "client/scenes/light_state.h"
@@ -39,6 +40,11 @@ class LightTarget {
   /// the rest: midpoint rule over the grid. Lobes narrower than roughness 0.2 are widened to that.
   const glm::dvec3& unshadowed() const { return unshadowed_; }
 
+  /// True if f is (n.d)+ / |d|^4 up to a factor, d from the surface to the sample.
+  bool is_plain_rectangle() const {
+    return light_.light.shape == LightShape::kRectangle && !lobe_ && side_ == 1;
+  }
+
   /// A sample (u, v) in [0,1)^2 with density f / integral f. Requires `reaches`.
   glm::dvec2 draw(Rng& rng) const;
   /// f at (u, v), up to a factor, and the sample.
@@ -55,8 +61,8 @@ class LightTarget {
   const Surface& surface_;
   bool lobe_;
   int side_ = 1;
-  double total_ = 0.0;                        // sum of all bounds
-  std::array<double, kGrid * kGrid> bound_;   // by cell; the first side_^2 are set
+  double total_ = 0.0;                       // sum of all bounds
+  std::array<double, kGrid * kGrid> bound_;  // by cell; the first side_^2 are set
   glm::dvec3 unshadowed_{0.0};
 };
 

@@ -14,7 +14,7 @@ namespace holdfast::scenes {
 struct RenderSettings {
   int width = 480, height = 270;  ///< pixels, 1..kMaxDimension
   int spp = 1;                    ///< samples per component and pixel of noisy frames, >= 1
-  int reference_spp = 256;        ///< the same of references, >= 1
+  int reference_spp = 1024;       ///< the same of references, >= 1
   std::uint64_t seed = 1;
   double speed = 1.0;            ///< of all animation: frame i shows the scene at time i * speed
   std::int64_t first_frame = 0;  ///< its tables name every object and light
@@ -24,8 +24,8 @@ struct RenderSettings {
 /// they do not depend on the number of threads or on what was rendered before.
 class Renderer {
  public:
-  /// Throws InputError for settings out of range, a scene without camera keys or with an id twice or
-  /// 0, and meshes that cannot be read.
+  /// Throws InputError for settings out of range, a scene without camera keys or with an id twice
+  /// or 0, and meshes that cannot be read.
   Renderer(Scene scene, const RenderSettings& settings);
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

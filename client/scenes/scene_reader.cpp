@@ -1,8 +1,8 @@
 #include <cmath>
-#include <fstream>
-#include <limits>
+
 #include <nlohmann/json.hpp>
 
+#include "client/scenes/json_values.h"
 #include "client/scenes/scene_json.h"
 #include "client/sequence/strict_json.h"
 #include "core/frame/error.h"
@@ -11,84 +11,6 @@ namespace holdfast::scenes {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// A number in low..high, or `fallback` where the key is absent.
-double number_or(StrictObject& in, const std::string& key, double fallback, double low = -kInf,
-                 double high = kInf) {
-  const Json* value = in.optional(key);
-  if (!value) return fallback;
-  const double number = value->is_number() ? value->get<double>() : std::nan("");
-  if (!(std::isfinite(number) && number >= low && number <= high)) {
-    const std::string span = low == -kInf ? "finite" : std::to_string(low) + " or more";
-    throw InputError(in.subject(key),
-                     "must be a number, " +
-                         (high == kInf ? span : std::to_string(low) + ".." + std::to_string(high)),
-                     json_excerpt(*value));
-  }
-  return number;
-}
-
-/// As above, but above 0.
-double positive_or(StrictObject& in, const std::string& key, double fallback, double high = kInf) {
-  const double value = number_or(in, key, fallback, 0.0, high);
-  if (value > 0.0) return value;
-  throw InputError(in.subject(key), "must be greater than 0", std::to_string(value));
-}
-
-template <int N>
-glm::vec<N, double> vector_of(StrictObject& in, const std::string& key, const Json& value) {
-  glm::vec<N, double> out;
-  bool valid = value.is_array() && value.size() == N;
-  for (int i = 0; valid && i < N; ++i) {
-    valid = value[static_cast<std::size_t>(i)].is_number();
-    if (valid) out[i] = value[static_cast<std::size_t>(i)].get<double>();
-    valid = valid && std::isfinite(out[i]);
-  }
-  if (!valid)
-    throw InputError(in.subject(key), "must be " + std::to_string(N) + " finite numbers",
-                     json_excerpt(value));
-  return out;
-}
-
-template <int N>
-glm::vec<N, double> vector_or(StrictObject& in, const std::string& key,
-                              const glm::vec<N, double>& fallback) {
-  const Json* value = in.optional(key);
-  return value ? vector_of<N>(in, key, *value) : fallback;
-}
-
-/// A colour 0..high: three numbers, or one for all.
-glm::dvec3 colour_or(StrictObject& in, const std::string& key, const glm::dvec3& fallback,
-                     double high) {
-  const Json* value = in.optional(key);
-  if (!value) return fallback;
-  const glm::dvec3 colour = value->is_number() ? glm::dvec3(value->get<double>())
-                                               : vector_of<3>(in, key, *value);
-  for (int c = 0; c < 3; ++c)
-    if (!(colour[c] >= 0.0 && colour[c] <= high))
-      throw InputError(in.subject(key),
-                       high == kInf ? "must not be negative" : "must lie in 0.." + std::to_string(high),
-                       json_excerpt(*value));
-  return colour;
-}
-
-StrictObject child(StrictObject& in, const std::string& key) {
-  return {in.required(key), in.file(), in.path(key)};
-}
-
-/// Calls `read` with each element of an array of objects.
-template <class Read>
-void each(StrictObject& in, const std::string& key, const Json& array, const Read& read) {
-  if (!array.is_array())
-    throw InputError(in.subject(key), "must be an array", json_excerpt(array));
-  for (std::size_t i = 0; i < array.size(); ++i) {
-    StrictObject item(array[i], in.file(), in.path(key) + "[" + std::to_string(i) + "]");
-    read(item);
-    item.finish();
-  }
-}
 
 Transform read_transform(StrictObject& in) {
   Transform out;
@@ -101,7 +23,8 @@ Transform read_transform(StrictObject& in) {
   }
   if (const Json* value = in.optional("lookAt")) {
     if (in.json().contains("rotation"))
-      throw InputError(in.subject("lookAt"), "must not stand beside rotation", json_excerpt(*value));
+      throw InputError(in.subject("lookAt"), "must not stand beside rotation",
+                       json_excerpt(*value));
     const glm::dvec3 target = vector_of<3>(in, "lookAt", *value);
     if (target == out.translation)
       throw InputError(in.subject("lookAt"), "must differ from translation", json_excerpt(*value));
@@ -170,7 +93,7 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else if (shape == "quad") {
     part.shape = PartShape::kQuad;
     const glm::dvec2 size = vector_or<2>(in, "size", glm::dvec2(1.0));
-    part.size_m = {size.x, 1.0, size.y};
+    part.size_m = {size.x, 0.0, size.y};
   } else if (shape == "sphere") {
     part.shape = PartShape::kSphere;
     part.radius_m = positive_or(in, "radius", part.radius_m);
@@ -184,8 +107,10 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else {
     throw InputError(in.subject("shape"), "must be box, quad, sphere, cylinder or mesh", shape);
   }
-  if (!(part.size_m.x > 0.0 && part.size_m.y > 0.0 && part.size_m.z > 0.0))
-    throw InputError(in.subject("size"), "must be greater than 0", json_excerpt(in.required("size")));
+  const double thickness = part.shape == PartShape::kQuad ? 1.0 : part.size_m.y;
+  if (!(part.size_m.x > 0.0 && thickness > 0.0 && part.size_m.z > 0.0))
+    throw InputError(in.subject("size"), "must be greater than 0",
+                     json_excerpt(in.required("size")));
   part.placement = read_transform(in);
   return part;
 }
@@ -204,7 +129,7 @@ Material read_material(StrictObject& parent) {
   }
   material.roughness = number_or(in, "roughness", material.roughness, 0.0, 1.0);
   material.specular = colour_or(in, "specular", material.specular, 1.0);
-  material.emission = colour_or(in, "emission", material.emission, kInf);
+  material.emission = colour_or(in, "emission", material.emission, kNoLimit);
   in.finish();
   return material;
 }
@@ -234,13 +159,14 @@ SceneLight read_light(StrictObject& in) {
   out.light.width = number_or(in, "width", 0.0, 0.0);
   out.light.height = number_or(in, "height", 0.0, 0.0);
   out.light.radius = number_or(in, "radius", 0.0, 0.0);
-  const bool flat = *shape == LightShape::kRectangle && !(out.light.width > 0 && out.light.height > 0);
+  const bool flat =
+      *shape == LightShape::kRectangle && !(out.light.width > 0 && out.light.height > 0);
   const bool round = *shape == LightShape::kDisk || *shape == LightShape::kSphere;
   if (flat) throw InputError(in.subject("width"), "and height must be greater than 0", "0");
   if (round && !(out.light.radius > 0))
     throw InputError(in.subject("radius"), "must be greater than 0", "0");
   in.required("emission");
-  out.emission = colour_or(in, "emission", out.emission, kInf);
+  out.emission = colour_or(in, "emission", out.emission, kNoLimit);
   out.from_frame = number_or(in, "fromFrame", 0.0);
   out.motion = read_rigid_motion(in);
   return out;
@@ -291,11 +217,11 @@ Scene read_top(StrictObject& in, const std::filesystem::path& folder) {
   scene.components = read_components(in);
   if (in.optional("sky")) {
     StrictObject sky = child(in, "sky");
-    scene.sky.horizon = colour_or(sky, "horizon", scene.sky.horizon, kInf);
-    scene.sky.zenith = colour_or(sky, "zenith", scene.sky.zenith, kInf);
+    scene.sky.horizon = colour_or(sky, "horizon", scene.sky.horizon, kNoLimit);
+    scene.sky.zenith = colour_or(sky, "zenith", scene.sky.zenith, kNoLimit);
     sky.finish();
   }
-  scene.ambient = colour_or(in, "ambient", scene.ambient, kInf);
+  scene.ambient = colour_or(in, "ambient", scene.ambient, kNoLimit);
   scene.camera = read_camera(in);
   each(in, "objects", in.required("objects"),
        [&](StrictObject& item) { scene.objects.push_back(read_object(item, folder)); });
