@@ -12,9 +12,27 @@ namespace {
 
 constexpr int kRowsPerTask = 16;
 
-/// out[x] += tap * in[x]; the loop that the compiler vectorises.
-void add_scaled(const float* __restrict in, float tap, int count, float* __restrict out) noexcept {
-  for (int x = 0; x < count; ++x) out[x] += tap * in[x];
+/// Pixels of one row that are summed together: their sums stay in registers over all taps.
+constexpr int kBlock = 32;
+
+/// out[x] = sum_i taps[i] * rows[i][x] for a whole row; the loops that the compiler vectorises.
+void sum_rows(std::span<const float* const> rows, std::span<const float> taps, int width,
+              float* out) noexcept {
+  int start = 0;
+  for (; start + kBlock <= width; start += kBlock) {
+    float sums[kBlock] = {};
+    for (std::size_t i = 0; i < taps.size(); ++i) {
+      const float tap = taps[i];
+      const float* in = rows[i] + start;
+      for (int x = 0; x < kBlock; ++x) sums[x] += tap * in[x];
+    }
+    std::copy_n(sums, kBlock, out + start);
+  }
+  for (int x = start; x < width; ++x) {
+    float sum = 0;
+    for (std::size_t i = 0; i < taps.size(); ++i) sum += taps[i] * rows[i][x];
+    out[x] = sum;
+  }
 }
 
 const float* row_at(const float* image, int width, int y) noexcept {
@@ -47,19 +65,20 @@ void convolve(const float* in, int width, int height, std::span<const float> row
   for_rows(height, [&](int y) {
     std::vector<float> padded(static_cast<std::size_t>(width + 2 * row_radius));
     pad_row(row_at(in, width, y), width, row_radius, border, padded.data());
-    float* target = between.data() + static_cast<std::ptrdiff_t>(y) * width;
-    for (std::size_t i = 0; i < row_taps.size(); ++i)
-      add_scaled(padded.data() + i, row_taps[i], width, target);
+    std::vector<const float*> rows;
+    for (std::size_t i = 0; i < row_taps.size(); ++i) rows.push_back(padded.data() + i);
+    sum_rows(rows, row_taps, width, between.data() + static_cast<std::ptrdiff_t>(y) * width);
   });
+  const std::vector<float> zeros(static_cast<std::size_t>(width));
   for_rows(height, [&](int y) {
-    float* target = out + static_cast<std::ptrdiff_t>(y) * width;
-    std::fill_n(target, width, 0.0f);
-    for (int j = -column_radius; j <= column_radius; ++j) {
-      const int source = border == Border::kReplicate ? std::clamp(y + j, 0, height - 1) : y + j;
-      if (source >= 0 && source < height)
-        add_scaled(row_at(between.data(), width, source),
-                   column_taps[static_cast<std::size_t>(j + column_radius)], width, target);
+    std::vector<const float*> rows;
+    for (int source = y - column_radius; source <= y + column_radius; ++source) {
+      const bool outside = source < 0 || source >= height;
+      rows.push_back(outside && border == Border::kZero
+                         ? zeros.data()
+                         : row_at(between.data(), width, std::clamp(source, 0, height - 1)));
     }
+    sum_rows(rows, column_taps, width, out + static_cast<std::ptrdiff_t>(y) * width);
   });
 }
 

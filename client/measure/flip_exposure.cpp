@@ -56,9 +56,11 @@ std::vector<float> flip_exposures(const Image& reference_rgb, const Mask& surfac
 }
 
 float aces_tonemap(float value) {
-  const double x = static_cast<double>(std::clamp(value, 0.0f, 1e18f));
-  return static_cast<float>(
-      std::clamp((kA * x * x + kB * x) / (kC * x * x + kD * x + kE), 0.0, 1.0));
+  constexpr auto a = static_cast<float>(kA), b = static_cast<float>(kB);
+  constexpr auto c = static_cast<float>(kC), d = static_cast<float>(kD);
+  constexpr auto e = static_cast<float>(kE);
+  const float x = std::clamp(value, 0.0f, 1e18f);
+  return std::clamp((a * x + b) * x / ((c * x + d) * x + e), 0.0f, 1.0f);
 }
 
 }  // namespace holdfast::measure
