@@ -9,6 +9,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "holdfast 0.1.0");
+  add_compare(app);
+  add_render(app);
   try {
     app.parse(argc, argv);
     return kDone;

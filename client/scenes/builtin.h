@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "client/scenes/scene.h"
+
+namespace holdfast::scenes {
+
+/// A scene that the renderer knows by name.
+struct BuiltinScene {
+  std::string_view name;
+  std::string_view shows;
+  Scene (*make)();
+};
+
+const std::vector<BuiltinScene>& builtin_scenes();
+
+/// The built-in scene of that name. Throws InputError that lists the names.
+Scene builtin_scene(std::string_view name);
+
+/// A static slatted fence on uneven ground, a rectangle light on an arc behind it: a moving shadow.
+Scene fence_scene();
+/// A cylinder standing on a plane, a rectangle light moving left.
+Scene cylinder_scene();
+/// A fence, a polished floor and coloured walls; nothing moves.
+Scene static_scene();
+
+/// Shapes that built-in scenes are put together from.
+Part box_part(const glm::dvec3& size_m, const glm::dvec3& centre, double turn_deg = 0.0);
+Part sphere_part(double radius_m, const glm::dvec3& centre);
+Part cylinder_part(double radius_m, double height_m, const glm::dvec3& centre);
+/// Vertical slats with pointed gaps of equal width, two rails and a post at each end, centred in x.
+std::vector<Part> fence_parts(int slats, double pitch_m, double height_m);
+/// One object at rest.
+Object still_object(std::uint32_t id, std::string name, const Material& material,
+                    std::vector<Part> parts);
+
+}  // namespace holdfast::scenes

@@ -1,0 +1,56 @@
+#include "client/scenes/path.h"
+
+#include <limits>
+#include <numbers>
+
+#include "client/scenes/sampling.h"
+#include "client/scenes/surface.h"
+
+namespace holdfast::scenes {
+namespace {
+
+constexpr int kMostSurfaces = 3;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Irradiance from all lights by one uniform sample of each.
+glm::dvec3 sample_irradiance(const World& world, const std::vector<LightState>& lights,
+                             const Surface& surface, Rng& rng) {
+  glm::dvec3 sum(0.0);
+  for (const LightState& light : lights) {
+    const glm::dvec2 uv = rng.next2();
+    if (!light.is_on()) continue;
+    const LightSample sample = sample_light(light, surface.origin, uv);
+    const double cosine = glm::dot(surface.normal, sample.direction);
+    if (cosine <= 0.0 || sample.geometry <= 0.0) continue;
+    if (!world.occluded(surface.origin, sample.direction, sample.distance_m))
+      sum += light.emission * (cosine * sample.geometry);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Incident trace_path(const Scene& scene, const World& world, const std::vector<LightState>& lights,
+                    const glm::dvec3& origin, const glm::dvec3& direction, Rng& rng) {
+  Incident out;
+  glm::dvec3 throughput(1.0), from = origin, along = direction;
+  for (int depth = 0; depth < kMostSurfaces; ++depth) {
+    const std::optional<Hit> hit = world.nearest(from, along, kFar);
+    if (depth == 0) out.hit = hit;
+    if (!hit) {
+      out.radiance += throughput * scene.sky.radiance(along);
+      break;
+    }
+    const Surface surface = surface_at(scene, *hit, along);
+    const glm::dvec3 reflectance = glm::min(surface.albedo + surface.specular, glm::dvec3(0.95));
+    out.radiance += throughput * surface.emission;
+    throughput *= reflectance;
+    out.radiance +=
+        throughput * sample_irradiance(world, lights, surface, rng) * std::numbers::inv_pi;
+    from = surface.origin;
+    along = sample_cosine(surface.normal, rng.next2());
+  }
+  return out;
+}
+
+}  // namespace holdfast::scenes

@@ -1,0 +1,192 @@
+#include "client/scenes/world.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace holdfast::scenes {
+namespace {
+
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
+using RayScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
+
+float ray_end(double max_m) {
+  return static_cast<float>(std::min(max_m, 1e30));
+}
+
+RayScene make_mesh_scene(RTCDevice device, const Mesh& mesh) {
+  RayScene scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                            sizeof(glm::vec3), mesh.positions.size());
+  std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(positions));
+  void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            sizeof(glm::uvec3), mesh.triangles.size());
+  std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(triangles));
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene.get(), geometry, 0);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  return scene;
+}
+
+void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction, double max_m) {
+  const glm::vec3 o(origin), d(direction);
+  ray = {};
+  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
+  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
+  ray.tfar = ray_end(max_m);
+  ray.mask = ~0u;
+}
+
+}  // namespace
+
+struct World::State {
+  struct Instance {
+    Mesh mesh;
+    RayScene scene;
+    RTCGeometry geometry = nullptr;
+    glm::dmat4 world_from_object{1.0};
+    glm::dmat3 normal_from_object{1.0};
+  };
+
+  explicit State(const Scene& s) : description(s), device(rtcNewDevice(nullptr)) {
+    if (!device) throw std::runtime_error("Embree could not be started");
+    top.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(top.get(), RTC_SCENE_FLAG_ROBUST);
+    for (std::size_t i = 0; i < s.objects.size(); ++i) {
+      Instance& instance = instances.emplace_back();
+      instance.mesh = mesh_of_object(s.objects[i]);
+      instance.scene = make_mesh_scene(device.get(), instance.mesh);
+      instance.geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(instance.geometry, instance.scene.get());
+      rtcAttachGeometryByID(top.get(), instance.geometry, static_cast<unsigned>(i));
+      rtcReleaseGeometry(instance.geometry);  // the scene keeps it
+    }
+  }
+
+  const Scene& description;
+  Device device;
+  RayScene top;
+  std::vector<Instance> instances;
+};
+
+World::World(const Scene& scene) {
+  // One thread builds, so that the tree never depends on the number of threads.
+  tbb::task_arena(1).execute([&] { state_ = std::make_unique<State>(scene); });
+  set_time(0.0);
+}
+
+World::~World() = default;
+
+void World::set_time(double frame) {
+  tbb::task_arena(1).execute([&] {
+    for (std::size_t i = 0; i < state_->instances.size(); ++i) {
+      State::Instance& instance = state_->instances[i];
+      const Object& object = state_->description.objects[i];
+      instance.world_from_object = object.motion.at(frame).matrix();
+      instance.normal_from_object =
+          glm::transpose(glm::inverse(glm::dmat3(instance.world_from_object)));
+      const glm::mat4 m(instance.world_from_object);
+      rtcSetGeometryTransform(instance.geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &m[0][0]);
+      if (frame >= object.from_frame)
+        rtcEnableGeometry(instance.geometry);
+      else
+        rtcDisableGeometry(instance.geometry);
+      rtcCommitGeometry(instance.geometry);
+    }
+    rtcCommitScene(state_->top.get());
+  });
+}
+
+std::optional<Hit> World::nearest(const glm::dvec3& origin, const glm::dvec3& direction,
+                                  double max_m) const {
+  RTCRayHit query;
+  set_ray(query.ray, origin, direction, max_m);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(state_->top.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+
+  Hit hit;
+  hit.object = query.hit.instID[0];
+  const State::Instance& instance = state_->instances[hit.object];
+  const glm::uvec3 t = instance.mesh.triangles[query.hit.primID];
+  const glm::dvec3 a(instance.mesh.positions[t.x]), b(instance.mesh.positions[t.y]),
+      c(instance.mesh.positions[t.z]);
+  const auto u = static_cast<double>(query.hit.u), v = static_cast<double>(query.hit.v);
+  hit.object_position = a + u * (b - a) + v * (c - a);
+  hit.object_normal = glm::normalize(glm::cross(b - a, c - a));
+  glm::dvec3 smooth = (1.0 - u - v) * glm::dvec3(instance.mesh.normals[t.x]) +
+                      u * glm::dvec3(instance.mesh.normals[t.y]) +
+                      v * glm::dvec3(instance.mesh.normals[t.z]);
+  if (smooth == glm::dvec3(0.0)) smooth = hit.object_normal;
+
+  hit.position = glm::dvec3(instance.world_from_object * glm::dvec4(hit.object_position, 1.0));
+  hit.distance_m = glm::distance(origin, hit.position);
+  hit.geometric_normal = glm::normalize(instance.normal_from_object * hit.object_normal);
+  if (glm::dot(hit.geometric_normal, direction) > 0.0) hit.geometric_normal = -hit.geometric_normal;
+  hit.normal = glm::normalize(instance.normal_from_object * smooth);
+  if (glm::dot(hit.normal, hit.geometric_normal) < 0.0) hit.normal = -hit.normal;
+  // At a silhouette the interpolated normal may look away from the viewer.
+  if (glm::dot(hit.normal, direction) > 0.0) hit.normal = hit.geometric_normal;
+  return hit;
+}
+
+bool World::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double max_m) const {
+  RTCRay ray;
+  set_ray(ray, origin, direction, max_m);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(state_->top.get(), &context, &ray);
+  return ray.tfar < 0.0f;
+}
+
+unsigned World::occluded8(const glm::dvec3& origin, std::span<const glm::dvec3> directions,
+                          std::span<const double> max_m) const {
+  alignas(32) int valid[8] = {};
+  RTCRay8 rays{};
+  const glm::vec3 o(origin);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const glm::vec3 d(directions[i]);
+    valid[i] = -1;
+    rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
+    rays.dir_x[i] = d.x, rays.dir_y[i] = d.y, rays.dir_z[i] = d.z;
+    rays.tfar[i] = ray_end(max_m[i]);
+    rays.mask[i] = ~0u;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded8(valid, state_->top.get(), &context, &rays);
+  unsigned blocked = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    if (rays.tfar[i] < 0.0f) blocked |= 1u << i;
+  return blocked;
+}
+
+const Mesh& World::mesh(std::size_t object) const { return state_->instances[object].mesh; }
+
+const glm::dmat4& World::world_from_object(std::size_t object) const {
+  return state_->instances[object].world_from_object;
+}
+
+glm::dvec3 offset_origin(const glm::dvec3& position, const glm::dvec3& geometric_normal) {
+  const glm::dvec3 a = glm::abs(position);
+  return position + geometric_normal * (1e-4 * std::max({1.0, a.x, a.y, a.z}));
+}
+
+}  // namespace holdfast::scenes

@@ -1,0 +1,98 @@
+#include "client/sequence/strict_json.h"
+
+#include <cmath>
+#include <fstream>
+
+#include "core/frame/conventions.h"
+#include "core/frame/error.h"
+
+namespace holdfast {
+
+StrictObject::StrictObject(const nlohmann::json& json, std::string file, std::string path)
+    : json_(json), file_(std::move(file)), path_(std::move(path)) {
+  if (!json_.is_object())
+    throw InputError("file " + file_ + (path_.empty() ? "" : ", " + path_), "must be a JSON object",
+                     json_excerpt(json_));
+}
+
+const nlohmann::json& StrictObject::required(const std::string& key) {
+  if (const nlohmann::json* value = optional(key)) return *value;
+  throw InputError(subject(key), "must be present", "missing");
+}
+
+const nlohmann::json* StrictObject::optional(const std::string& key) {
+  asked_.insert(key);
+  const auto it = json_.find(key);
+  return it == json_.end() ? nullptr : &*it;
+}
+
+void StrictObject::finish() const {
+  for (const auto& [key, value] : json_.items())
+    if (!asked_.contains(key))
+      throw InputError(subject(key), "must be a key of the format", "unknown");
+}
+
+double StrictObject::number(const std::string& key) {
+  const nlohmann::json& value = required(key);
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    throw InputError(subject(key), "must be a finite number", json_excerpt(value));
+  return value.get<double>();
+}
+
+std::int64_t StrictObject::integer(const std::string& key, std::int64_t low, std::int64_t high) {
+  const nlohmann::json& value = required(key);
+  const bool fits = value.is_number_integer() &&
+                    (!value.is_number_unsigned() || value.get<std::uint64_t>() <= INT64_MAX) &&
+                    value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
+  if (!fits)
+    throw InputError(subject(key),
+                     "must be an integer in " + std::to_string(low) + ".." + std::to_string(high),
+                     json_excerpt(value));
+  return value.get<std::int64_t>();
+}
+
+std::string StrictObject::text(const std::string& key) {
+  const nlohmann::json& value = required(key);
+  if (!value.is_string()) throw InputError(subject(key), "must be a string", json_excerpt(value));
+  return value.get<std::string>();
+}
+
+glm::dmat4 StrictObject::matrix(const std::string& key) {
+  const nlohmann::json& value = required(key);
+  const InputError error(subject(key), "must be 16 finite numbers, row by row",
+                         json_excerpt(value));
+  if (!value.is_array() || value.size() != 16) throw error;
+  double numbers[16];
+  for (std::size_t i = 0; i < 16; ++i) {
+    if (!value[i].is_number()) throw error;
+    numbers[i] = value[i].get<double>();
+    if (!std::isfinite(numbers[i])) throw error;
+  }
+  return matrix_from_row_major(numbers);
+}
+
+std::string StrictObject::path(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+
+std::string StrictObject::subject(const std::string& key) const {
+  return "file " + file_ + ", " + path(key);
+}
+
+nlohmann::json read_json_file(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError("file " + file, "must be an existing JSON file", "missing");
+  try {
+    return nlohmann::json::parse(stream);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError("file " + file, "must be valid JSON", std::string("not: ") + error.what());
+  }
+}
+
+std::string json_excerpt(const nlohmann::json& json) {
+  constexpr std::size_t kLongest = 60;
+  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+}  // namespace holdfast
