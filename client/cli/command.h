@@ -19,5 +19,6 @@ struct ServerUnreachable : std::runtime_error {
 // exception with kFailed.
 void add_compare(CLI::App& app);
 void add_render(CLI::App& app);
+void add_replay(CLI::App& app);
 
 }  // namespace holdfast::cli

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "holdfast 0.1.0");
   add_compare(app);
   add_render(app);
+  add_replay(app);
   try {
     app.parse(argc, argv);
     return kDone;

@@ -84,9 +84,12 @@ void write_frame_begin(const Frame& frame, const std::vector<PlaneId>& planes,
 
 void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
   output.index = result.index();
-  if (result.has_error())
-    output.error = FrameFailure{result.error().code() == v1::FRAME_ERROR_CODE_INVALID_FRAME,
-                                result.error().message()};
+  if (result.has_error()) {
+    output.error = FrameFailure{result.error().message(), {}};
+    const v1::InputViolation& violation = result.error().violation();
+    if (result.error().code() == v1::FRAME_ERROR_CODE_INVALID_FRAME)
+      output.error->input.emplace(violation.subject(), violation.rule(), violation.value());
+  }
   const v1::FrameTiming& timing = result.timing();
   output.timing.receive = timing.receive_ms();
   output.timing.wait = timing.wait_ms();

@@ -58,8 +58,8 @@ struct FrameTiming {
 
 /// Why a frame has no results. Later frames are not affected.
 struct FrameFailure {
-  bool input = false;   ///< true: the frame broke a rule; false: the server failed
-  std::string message;  ///< names the thing, the rule and the value
+  std::string message;
+  std::optional<InputError> input;  ///< the rule that the frame broke; nothing if the server failed
 };
 
 /// The answer to one frame.
