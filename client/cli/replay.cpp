@@ -132,7 +132,7 @@ double percentile(std::vector<double> values, double fraction) {
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
-nlohmann::json percentiles(const std::vector<double>& values) {
+nlohmann::ordered_json percentiles(const std::vector<double>& values) {
   return {{"p50", percentile(values, 0.50)},
           {"p95", percentile(values, 0.95)},
           {"p99", percentile(values, 0.99)}};
@@ -153,7 +153,7 @@ ReplayResult replay_sequence(const ReplayOptions& options) {
   }
 }
 
-nlohmann::json replay_json(const ReplayResult& result) {
+nlohmann::ordered_json replay_json(const ReplayResult& result) {
   return {{"frames", result.frames},
           {"recipe", result.recipe},
           {"preset", result.preset},

@@ -46,6 +46,6 @@ struct ReplayResult {
 ReplayResult replay_sequence(const ReplayOptions& options);
 
 /// The machine-readable form of a result.
-nlohmann::json replay_json(const ReplayResult& result);
+nlohmann::ordered_json replay_json(const ReplayResult& result);
 
 }  // namespace holdfast::cli
