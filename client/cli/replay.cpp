@@ -31,8 +31,8 @@ std::vector<std::int64_t> chosen_frames(const SequenceReader& sequence,
   return frames;
 }
 
-client::SessionOptions session_options(const SequenceReader& sequence,
-                                       const ReplayOptions& options, const std::string& address) {
+client::SessionOptions session_options(const SequenceReader& sequence, const ReplayOptions& options,
+                                       const std::string& address) {
   client::SessionOptions session;
   session.address = address;
   session.width = sequence.header().width;
@@ -93,9 +93,9 @@ class Replay {
  private:
   void pace(Clock::time_point start, std::size_t frame) const {
     if (options_.fps <= 0) return;
-    std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(
-                                              std::chrono::duration<double>(
-                                                  static_cast<double>(frame) / options_.fps)));
+    std::this_thread::sleep_until(
+        start + std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>(static_cast<double>(frame) / options_.fps)));
   }
 
   /// Writes an answer; false if there is none.

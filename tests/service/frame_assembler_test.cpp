@@ -103,13 +103,15 @@ TEST_F(FrameAssembly, NamesAPlaneAnnouncedTwice) {
 
 TEST_F(FrameAssembly, NamesAnUnknownPlane) {
   chunk(2).set_plane(77);
-  EXPECT_EQ(assemble(), "plane number 77 must be less than the session's 5 planes, but it is unknown");
+  EXPECT_EQ(assemble(),
+            "plane number 77 must be less than the session's 5 planes, but it is unknown");
 }
 
 TEST_F(FrameAssembly, NamesATruncatedPlane) {
   messages.erase(messages.begin() + 5);
-  EXPECT_EQ(assemble(),
-            "plane light0.visibility of frame 4 must have 140 bytes, but it is cut off after 0 bytes");
+  EXPECT_EQ(
+      assemble(),
+      "plane light0.visibility of frame 4 must have 140 bytes, but it is cut off after 0 bytes");
 }
 
 TEST_F(FrameAssembly, NamesTooMuchData) {
@@ -145,9 +147,10 @@ TEST_F(FrameAssembly, NamesAnEmptyChunkAndATornWord) {
 
 TEST_F(FrameAssembly, NamesALastMarkAtTheWrongPlace) {
   chunk(0).set_last(false);
-  EXPECT_EQ(assemble(),
-            "last of a chunk of plane depth must be set exactly on the chunk that ends at 140 bytes, "
-            "but it is not set at 140 bytes");
+  EXPECT_EQ(
+      assemble(),
+      "last of a chunk of plane depth must be set exactly on the chunk that ends at 140 bytes, "
+      "but it is not set at 140 bytes");
 }
 
 TEST_F(FrameAssembly, NamesAFrameEndOfAnotherFrame) {

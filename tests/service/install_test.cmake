@@ -22,15 +22,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/client/sdk/example -B ${work}/example -G N
     -DCMAKE_PREFIX_PATH=${work}/prefix ${sanitize})
 run(${CMAKE_COMMAND} --build ${work}/example)
 
-set(script "\"$1\" --listen \"unix:$3/s\" --log-level warn & server=$!
-for i in $(seq 100); do [ -S \"$3/s\" ] && break; sleep 0.05; done
-\"$2\" \"unix:$3/s\"; code=$?
-kill -TERM $server; wait $server || code=1; exit $code")
-# A directory with a short path: names of unix sockets are limited to 107 bytes.
-run(mktemp -d)
-string(STRIP "${text}" sockets)
-run(bash -c "${script}" bash ${SERVER} ${work}/example/stream_frames ${sockets})
-file(REMOVE_RECURSE ${sockets})
+run(${SOURCE_DIR}/tests/service/run_example.sh ${SERVER} ${work}/example/stream_frames)
 if(NOT text MATCHES "frame 7: centre")
   message(FATAL_ERROR "the example did not print its frames:\n${text}")
 endif()

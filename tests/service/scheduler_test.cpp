@@ -1,11 +1,11 @@
 #include "server/scheduler.h"
 
-#include <gtest/gtest.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <atomic>
 #include <latch>
 #include <mutex>
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/parallel_for.h>
 
 namespace holdfast::server {
 namespace {

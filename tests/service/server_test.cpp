@@ -1,11 +1,10 @@
 #include "server/server.h"
 
-#include <gtest/gtest.h>
+#include <filesystem>
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
-
-#include <filesystem>
+#include <gtest/gtest.h>
 
 #include "core/frame/error.h"
 #include "server/embedded.h"
@@ -33,7 +32,8 @@ std::string error_of(const ServerConfig& config) {
 }
 
 /// Sends one message, given as its bytes, and returns the bytes of the first answer.
-std::string call(const std::string& address, const std::string& method, const std::string& request) {
+std::string call(const std::string& address, const std::string& method,
+                 const std::string& request) {
   const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
   grpc::GenericStub stub(channel);
   grpc::ClientContext context;

@@ -1,8 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <holdfast/client.h>
-
 #include <thread>
+
+#include <gtest/gtest.h>
+#include <holdfast/client.h>
 
 #include "server/server.h"
 #include "tests/service/test_frames.h"
@@ -65,7 +64,8 @@ std::vector<PlaneSet> served(const server::Server& server, const DenoiserConfig&
 
 void expect_same(const std::vector<PlaneSet>& a, const std::vector<PlaneSet>& b) {
   ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(test::same_bits(a[i], b[i])) << "frame " << i;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_TRUE(test::same_bits(a[i], b[i])) << "frame " << i;
 }
 
 class Service : public ::testing::TestWithParam<int> {};
@@ -210,8 +210,9 @@ TEST(ClientSession, NamesTheOptionThatTheServerRefuses) {
             std::string::npos);
   EXPECT_EQ(message([](SessionOptions& o) { o.planes.push_back(o.planes[0]); }),
             "plane depth must be declared once, but it is declared twice");
-  EXPECT_NE(message([](SessionOptions& o) { o.results = {{PlaneKind::kDepth, {}}}; })
-                .find("result plane must be one of composite"),
+  EXPECT_NE(message([](SessionOptions& o) {
+              o.results = {{PlaneKind::kDepth, {}}};
+            }).find("result plane must be one of composite"),
             std::string::npos);
 }
 

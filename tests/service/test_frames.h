@@ -1,10 +1,10 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
-#include <glm/gtc/matrix_transform.hpp>
 #include <memory>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
 
 #include "core/denoiser/denoiser.h"
 
@@ -63,14 +63,14 @@ inline ::testing::AssertionResult same_bits(const PlaneSet& a, const PlaneSet& b
   for (const Plane& plane : a) {
     const Plane* const other = b.find(plane.id());
     if (!other || other->width() != plane.width() || other->height() != plane.height())
-      return ::testing::AssertionFailure() << plane_name(plane.id()) << " missing or of another size";
+      return ::testing::AssertionFailure()
+             << plane_name(plane.id()) << " missing or of another size";
     for (int c = 0; c < plane.channels(); ++c)
       for (int y = 0; y < plane.height(); ++y)
         for (int x = 0; x < plane.width(); ++x)
           if (plane.words(c).at(x, y) != other->words(c).at(x, y))
-            return ::testing::AssertionFailure()
-                   << plane_name(plane.id()) << " differs at channel " << c << ", pixel " << x << ", "
-                   << y;
+            return ::testing::AssertionFailure() << plane_name(plane.id()) << " differs at channel "
+                                                 << c << ", pixel " << x << ", " << y;
   }
   return ::testing::AssertionSuccess();
 }
