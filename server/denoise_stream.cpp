@@ -255,6 +255,8 @@ void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {
 }
 
 void DenoiseStream::OnDone() {
+  // gRPC has ordered every reaction before this one; the mutex makes that order our own.
+  { const std::lock_guard lock(mutex_); }
   state_.streams.remove(this);
   self_.reset();  // deletes this, unless a job is just returning
 }
