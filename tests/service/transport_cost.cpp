@@ -4,14 +4,13 @@
 //
 //   transport_cost [WIDTH HEIGHT FRAMES [unix | tcp]]
 
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include <holdfast/client.h>
+#include <sys/resource.h>
 
 #include "server/embedded.h"
 #include "server/server.h"
@@ -68,8 +67,8 @@ void measure(const std::string& address, int width, int height, int frames, bool
   while (auto output = session.receive()) core_ms += output->timing.core;
   const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   const client::Traffic after = session.traffic();
-  const double gb = 1e-9 * static_cast<double>(after.sent - before.sent + after.received -
-                                               before.received);
+  const double gb =
+      1e-9 * static_cast<double>(after.sent - before.sent + after.received - before.received);
   const int n = frames - kWarmUp;
   std::printf("%-10s %6.1f ms a frame, core %6.1f ms, %5.1f MB a frame, %.2f GB/s, %.2f CPU s/GB\n",
               pipelined ? "pipelined" : "lockstep", ms / n, core_ms / n, 1000 * gb / n,
