@@ -9,7 +9,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "holdfast 0.1.0");
+  add_compare(app);
   add_render(app);
+  add_replay(app);
   try {
     app.parse(argc, argv);
     return kDone;

@@ -1,0 +1,62 @@
+#include "client/measure/compare.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/json_file.h"
+#include "client/cli/progress.h"
+#include "client/measure/comparison_text.h"
+
+namespace holdfast::cli {
+namespace {
+
+struct Options {
+  std::string test, reference, json;
+  std::vector<std::string> layers;
+  measure::Region region = measure::Region::kImage;
+  bool no_flip = false, quiet = false;
+};
+
+void run(const Options& options) {
+  measure::CompareOptions compare;
+  compare.reference = options.reference;
+  compare.tests = {options.test};
+  compare.layers = options.layers;
+  compare.flip = !options.no_flip;
+  std::unique_ptr<Progress> progress;
+  compare.progress = [&](std::int64_t done, std::int64_t total) {
+    if (!progress) progress = std::make_unique<Progress>("compare", total, options.quiet);
+    progress->update(done);
+  };
+  const measure::Comparison result = measure::compare(compare).front();
+  progress.reset();
+
+  if (!options.json.empty()) write_json_file(options.json, comparison_json(result, options.region));
+  if (!options.quiet) std::fputs(comparison_table(result, options.region).c_str(), stdout);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Error of results against a sequence's references");
+  command->add_option("--test", options->test, "Directory with results, frame.####.exr")
+      ->required();
+  command->add_option("--reference", options->reference, "Sequence with references")->required();
+  command
+      ->add_option("--mask", options->region,
+                   "Pixels judged: image (all but sky) or effect (where the reference changed by "
+                   "more than 0.02)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, measure::Region>{
+          {"image", measure::Region::kImage}, {"effect", measure::Region::kEffect}}));
+  command->add_option("--layers", options->layers, "Layers judged, comma separated; all if absent")
+      ->delimiter(',');
+  command->add_flag("--no-flip", options->no_flip, "Leave out FLIP, which takes most of the time");
+  command->add_option("--json", options->json, "Write the machine-readable result to this file");
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace holdfast::cli
