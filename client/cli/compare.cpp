@@ -7,16 +7,24 @@
 #include "client/cli/json_file.h"
 #include "client/cli/progress.h"
 #include "client/measure/comparison_text.h"
+#include "client/measure/report.h"
 
 namespace holdfast::cli {
 namespace {
 
 struct Options {
-  std::string test, reference, json;
+  std::string test, reference, json, html;
   std::vector<std::string> layers;
   measure::Region region = measure::Region::kImage;
   bool no_flip = false, quiet = false;
 };
+
+void write_html(const Options& options, const measure::Comparison& result) {
+  const auto name = std::filesystem::path(options.test).lexically_normal().filename().string();
+  measure::write_report(
+      options.html, "Holdfast: " + options.test + " against references",
+      {{options.reference, "", options.reference, {{name, options.test, result}}}});
+}
 
 void run(const Options& options) {
   measure::CompareOptions compare;
@@ -33,6 +41,7 @@ void run(const Options& options) {
   progress.reset();
 
   if (!options.json.empty()) write_json_file(options.json, comparison_json(result, options.region));
+  if (!options.html.empty()) write_html(options, result);
   if (!options.quiet) std::fputs(comparison_table(result, options.region).c_str(), stdout);
 }
 
@@ -54,6 +63,7 @@ void add_compare(CLI::App& app) {
   command->add_option("--layers", options->layers, "Layers judged, comma separated; all if absent")
       ->delimiter(',');
   command->add_flag("--no-flip", options->no_flip, "Leave out FLIP, which takes most of the time");
+  command->add_option("--html", options->html, "Write a page with pictures, error maps and plots");
   command->add_option("--json", options->json, "Write the machine-readable result to this file");
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->callback([options] { run(*options); });
