@@ -52,7 +52,7 @@ Part cylinder_part(double radius_m, double height_m, const glm::dvec3& centre) {
 
 std::vector<Part> fence_parts(int slats, double pitch_m, double height_m) {
   std::vector<Part> parts;
-  const double width = 0.5 * pitch_m;
+  const double width = 0.58 * pitch_m;
   const double half = 0.5 * pitch_m * (slats - 1);
   for (int i = 0; i < slats; ++i) {
     const double x = i * pitch_m - half;

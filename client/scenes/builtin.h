@@ -30,7 +30,7 @@ Scene static_scene();
 Part box_part(const glm::dvec3& size_m, const glm::dvec3& centre, double turn_deg = 0.0);
 Part sphere_part(double radius_m, const glm::dvec3& centre);
 Part cylinder_part(double radius_m, double height_m, const glm::dvec3& centre);
-/// Vertical slats with pointed gaps of equal width, two rails and a post at each end, centred in x.
+/// Vertical slats of 0.58 of the pitch, two rails and a post at each end, centred in x.
 std::vector<Part> fence_parts(int slats, double pitch_m, double height_m);
 /// One object at rest.
 Object still_object(std::uint32_t id, std::string name, const Material& material,

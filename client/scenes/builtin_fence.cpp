@@ -38,9 +38,9 @@ Scene fence_scene() {
   scene.name = "fence";
   scene.components = {true, false, false};
   scene.sky = {{0.62, 0.66, 0.74}, {0.28, 0.38, 0.58}};
-  scene.ambient = {0.10, 0.13, 0.19};
+  scene.ambient = {0.19, 0.22, 0.29};
   scene.camera.vertical_fov_deg = 36.0;
-  scene.camera.motion = Motion(look_at({0.9, 2.1, 5.6}, {0.0, 0.45, 0.6}));
+  scene.camera.motion = Motion(look_at({0.8, 2.2, 4.8}, {0.02, 0.26, 0.9}));
 
   Part ground;
   ground.shape = PartShape::kQuad;
@@ -48,14 +48,14 @@ Scene fence_scene() {
   const Material tiles{.albedo = {0.62, 0.55, 0.44}, .checker = Checker{{0.52, 0.45, 0.36}, 0.5}};
   scene.objects = {
       still_object(1, "ground", tiles, {ground}),
-      still_object(2, "fence", {.albedo = {0.72, 0.36, 0.20}}, fence_parts(17, 0.24, 1.05)),
+      still_object(2, "fence", {.albedo = {0.72, 0.36, 0.20}}, fence_parts(11, 0.36, 1.05)),
       still_object(3, "stones", {.albedo = {0.45, 0.50, 0.52}}, stones()),
       still_object(4, "ball", {.albedo = {0.20, 0.48, 0.52}},
                    {sphere_part(0.28, {0.62, 0.28, 2.25})})};
 
   SceneLight light;
-  light.light = {.id = 0, .shape = LightShape::kRectangle, .width = 0.9, .height = 0.5};
-  light.emission = glm::dvec3(150.0, 138.0, 112.0);
+  light.light = {.id = 0, .shape = LightShape::kRectangle, .width = 0.55, .height = 0.35};
+  light.emission = glm::dvec3(760.0, 690.0, 560.0);
   light.motion = swinging_arc();
   scene.lights = {light};
   return scene;

@@ -39,6 +39,11 @@ class LightTarget {
   /// the rest: midpoint rule over the grid. Lobes narrower than roughness 0.2 are widened to that.
   const glm::dvec3& unshadowed() const { return unshadowed_; }
 
+  /// True if f is (n.d)+ / |d|^4 up to a factor, d from the surface to the sample.
+  bool is_plain_rectangle() const {
+    return light_.light.shape == LightShape::kRectangle && !lobe_ && side_ == 1;
+  }
+
   /// A sample (u, v) in [0,1)^2 with density f / integral f. Requires `reaches`.
   glm::dvec2 draw(Rng& rng) const;
   /// f at (u, v), up to a factor, and the sample.

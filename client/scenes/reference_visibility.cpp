@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 
+#include "client/scenes/light_batch.h"
 #include "client/scenes/light_target.h"
 #include "client/scenes/sampling.h"
 #include "client/scenes/shadow_ray.h"
@@ -12,40 +12,37 @@
 namespace holdfast::scenes {
 namespace {
 
-constexpr int kProbeSide = 8;    // 64 samples tell whether a pixel may lie in a penumbra
+constexpr int kProbeSide = 4;    // 16 samples tell whether a pixel may lie in a penumbra
 constexpr int kProbeRadius = 2;  // pixels around that must agree
 constexpr std::uint64_t kFirstStream = 1ull << 33;
 
-/// The weighted share of side^2 stratified light samples that nothing blocks.
+/// The share, by weight, of side^2 stratified light samples that nothing blocks. `side` is a multiple of 4.
 double visible_share(const View& view, const LightState& light, const Surface& surface, int side,
                      Rng rng) {
   const LightTarget target(light, surface);
   if (!target.reaches()) return 1.0;
-  if (light.is_delta()) side = 1;
-  std::array<glm::dvec3, 8> directions;
-  std::array<double, 8> lengths, weights;
-  double lit = 0.0, total = 0.0;
-  std::size_t count = 0;
-  const auto trace = [&] {
-    const unsigned blocked = view.world.occluded8(surface.origin, std::span(directions).first(count),
-                                                  std::span(lengths).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      total += weights[i];
-      if (!(blocked >> i & 1u)) lit += weights[i];
-    }
-    count = 0;
-  };
-  for (int i = 0; i < side * side; ++i) {
-    LightSample sample;
-    const glm::dvec2 jitter = light.is_delta() ? glm::dvec2(0.5) : rng.next2();
-    weights[count] = target.weight(stratified(i, side, jitter), sample);
-    if (weights[count] <= 0.0) continue;
-    const ShadowRay ray = shadow_ray(surface, sample);
-    directions[count] = ray.direction;
-    lengths[count] = ray.length_m;
-    if (++count == directions.size()) trace();
+  if (light.is_delta()) {
+    const ShadowRay ray = shadow_ray(surface, sample_light(light, surface.position, {0.5, 0.5}));
+    return view.world.occluded(surface.origin, ray.direction, ray.length_m) ? 0.0 : 1.0;
   }
-  if (count > 0) trace();
+  const LightBatcher batcher(light, surface, target);
+  LightBatch batch;
+  float u[RayBatch::kSize], v[RayBatch::kSize];
+  double lit = 0.0, total = 0.0;
+  for (int first = 0; first < side * side; first += RayBatch::kSize) {
+    for (int i = 0; i < RayBatch::kSize; ++i) {
+      const glm::dvec2 uv = stratified(first + i, side, rng.next2());
+      u[i] = static_cast<float>(uv.x);
+      v[i] = static_cast<float>(uv.y);
+    }
+    batcher.fill(u, v, batch);
+    const unsigned blocked = view.world.occluded(surface.origin, batch.rays);
+    for (int i = 0; i < RayBatch::kSize; ++i) {
+      const auto weight = static_cast<double>(batch.weight[i]);
+      total += weight;
+      if (!(blocked >> i & 1u)) lit += weight;
+    }
+  }
   return total > 0.0 ? lit / total : 1.0;
 }
 
@@ -80,11 +77,11 @@ bool is_settled(ChannelView<const float> probe, int x, int y) {
 
 void render_reference_visibility(const View& view, std::size_t light, int spp,
                                  ChannelView<float> out) {
-  const int side = strata_side(spp);
+  // A multiple of 4, so that the square divides into batches.
+  const int side = (strata_side(spp) + 3) / 4 * 4;
   const auto everywhere = [](int, int) { return true; };
-  const int first_side = std::min(side, kProbeSide);
   tbb::parallel_for(0, view.height,
-                    [&](int y) { render_row(view, light, first_side, y, out, everywhere); });
+                    [&](int y) { render_row(view, light, kProbeSide, y, out, everywhere); });
   if (side <= kProbeSide || view.lights[light].is_delta()) return;
   Channels<float> probe(view.width, view.height, 1);
   for (int y = 0; y < view.height; ++y) std::copy_n(out.row(y), view.width, probe[0].row(y));

@@ -14,7 +14,7 @@ namespace holdfast::scenes {
 struct RenderSettings {
   int width = 480, height = 270;  ///< pixels, 1..kMaxDimension
   int spp = 1;                    ///< samples per component and pixel of noisy frames, >= 1
-  int reference_spp = 256;        ///< the same of references, >= 1
+  int reference_spp = 1024;       ///< the same of references, >= 1
   std::uint64_t seed = 1;
   double speed = 1.0;            ///< of all animation: frame i shows the scene at time i * speed
   std::int64_t first_frame = 0;  ///< its tables name every object and light

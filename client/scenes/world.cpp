@@ -37,6 +37,7 @@ RayScene make_mesh_scene(RTCDevice device, const Mesh& mesh) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene.get(), geometry, 0);
   rtcReleaseGeometry(geometry);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(scene.get());
   return scene;
 }
@@ -155,26 +156,28 @@ bool World::occluded(const glm::dvec3& origin, const glm::dvec3& direction, doub
   return ray.tfar < 0.0f;
 }
 
-unsigned World::occluded8(const glm::dvec3& origin, std::span<const glm::dvec3> directions,
-                          std::span<const double> max_m) const {
-  alignas(32) int valid[8] = {};
-  RTCRay8 rays{};
+unsigned World::occluded(const glm::dvec3& origin, const RayBatch& rays) const {
+  static_assert(RayBatch::kSize == 8);
+  alignas(32) static constexpr int kAllValid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  RTCRay8 query;
   const glm::vec3 o(origin);
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const glm::vec3 d(directions[i]);
-    valid[i] = -1;
-    rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
-    rays.dir_x[i] = d.x, rays.dir_y[i] = d.y, rays.dir_z[i] = d.z;
-    rays.tfar[i] = ray_end(max_m[i]);
-    rays.mask[i] = ~0u;
+  for (std::size_t i = 0; i < 8; ++i) {
+    query.org_x[i] = o.x, query.org_y[i] = o.y, query.org_z[i] = o.z;
+    query.dir_x[i] = rays.x[i], query.dir_y[i] = rays.y[i], query.dir_z[i] = rays.z[i];
+    query.tnear[i] = 0.0f;
+    query.tfar[i] = rays.length[i];
+    query.time[i] = 0.0f;
+    query.mask[i] = ~0u;
+    query.id[i] = 0;
+    query.flags[i] = 0;
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded8(valid, state_->top.get(), &context, &rays);
+  rtcOccluded8(kAllValid, state_->top.get(), &context, &query);
   unsigned blocked = 0;
-  for (std::size_t i = 0; i < directions.size(); ++i)
-    if (rays.tfar[i] < 0.0f) blocked |= 1u << i;
+  for (unsigned i = 0; i < 8; ++i)
+    if (query.tfar[i] < 0.0f) blocked |= 1u << i;
   return blocked;
 }
 

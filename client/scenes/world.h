@@ -4,10 +4,10 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "client/scenes/mesh.h"
+#include "client/scenes/ray_batch.h"
 #include "client/scenes/scene.h"
 
 namespace holdfast::scenes {
@@ -39,9 +39,8 @@ class World {
                              double max_m) const;
   /// True if something lies on the ray before `max_m` metres. `direction` is unit.
   bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double max_m) const;
-  /// The same for up to 8 rays from one origin; bit i of the result is ray i.
-  unsigned occluded8(const glm::dvec3& origin, std::span<const glm::dvec3> directions,
-                     std::span<const double> max_m) const;
+  /// The same for a batch of rays from one origin; bit i of the result is ray i.
+  unsigned occluded(const glm::dvec3& origin, const RayBatch& rays) const;
 
   const Mesh& mesh(std::size_t object) const;
   const glm::dmat4& world_from_object(std::size_t object) const;
