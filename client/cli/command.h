@@ -20,5 +20,6 @@ struct ServerUnreachable : std::runtime_error {
 void add_compare(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_render(CLI::App& app);
+void add_replay(CLI::App& app);
 
 }  // namespace holdfast::cli

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   add_compare(app);
   add_demo(app);
   add_render(app);
+  add_replay(app);
   try {
     app.parse(argc, argv);
     return kDone;

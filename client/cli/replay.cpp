@@ -1,0 +1,169 @@
+#include "client/cli/replay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <thread>
+
+#include <holdfast/client.h>
+
+#include "client/cli/command.h"
+#include "client/cli/embedded_server.h"
+#include "client/cli/progress.h"
+#include "client/sequence/sequence.h"
+
+namespace holdfast::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<std::int64_t> chosen_frames(const SequenceReader& sequence,
+                                        const ReplayOptions& options) {
+  std::vector<std::int64_t> frames = sequence.frame_indices();
+  const std::string all = frames.empty() ? "none"
+                                         : "in " + std::to_string(frames.front()) + ".." +
+                                               std::to_string(frames.back());
+  std::erase_if(frames, [&](std::int64_t i) { return i < options.first || i > options.last; });
+  if (frames.empty())
+    throw InputError("frames to replay from " + sequence.dir().string(),
+                     "must be some of the sequence's, which are " + all, "none of them");
+  return frames;
+}
+
+client::SessionOptions session_options(const SequenceReader& sequence,
+                                       const ReplayOptions& options, const std::string& address) {
+  client::SessionOptions session;
+  session.address = address;
+  session.width = sequence.header().width;
+  session.height = sequence.header().height;
+  session.lights = sequence.header().lights;
+  session.planes = sequence.planes();
+  session.recipe = options.recipe;
+  session.preset = options.preset;
+  session.wire = options.wire;
+  session.budget_ms = options.budget_ms;
+  session.debug_planes = options.debug;
+  for (const std::string& layer : options.layers) {
+    const std::optional<PlaneId> id = plane_from_name(layer);
+    if (!id)
+      throw InputError("layer \"" + layer + "\"",
+                       "must be a result plane such as composite or light0.visibility", "unknown");
+    session.results.push_back(*id);
+  }
+  return session;
+}
+
+/// One run: keeps the session busy and writes what comes back.
+class Replay {
+ public:
+  Replay(const SequenceReader& sequence, const ReplayOptions& options, const std::string& address)
+      : sequence_(sequence),
+        options_(options),
+        frames_(chosen_frames(sequence, options)),
+        session_(session_options(sequence, options, address)),
+        progress_("replay " + session_.recipe(), static_cast<std::int64_t>(frames_.size()),
+                  options.quiet) {
+    std::filesystem::create_directories(options.out);
+    result_.recipe = session_.recipe();
+    result_.preset = session_.preset();
+    result_.width = sequence.header().width;
+    result_.height = sequence.header().height;
+  }
+
+  ReplayResult run() {
+    const Clock::time_point start = Clock::now();
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      auto frame = std::make_shared<const Frame>(sequence_.read_frame(frames_[i]));
+      pace(start, i);
+      while (!session_.try_submit(frame)) accept(session_.receive());
+      while (accept(session_.try_receive())) {
+      }
+    }
+    session_.finish();
+    while (accept(session_.receive())) {
+    }
+    const client::Traffic traffic = session_.traffic();
+    result_.bytes_in = traffic.sent;
+    result_.bytes_out = traffic.received;
+    session_.close();
+    return result_;
+  }
+
+ private:
+  void pace(Clock::time_point start, std::size_t frame) const {
+    if (options_.fps <= 0) return;
+    std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(
+                                              std::chrono::duration<double>(
+                                                  static_cast<double>(frame) / options_.fps)));
+  }
+
+  /// Writes an answer; false if there is none.
+  bool accept(std::optional<client::FrameOutput> output) {
+    if (!output) return false;
+    if (output->error && output->error->input) throw *output->error->input;
+    if (output->error)
+      throw std::runtime_error("frame " + std::to_string(output->index) + ": " +
+                               output->error->message);
+    write_exr(sequence_file(options_.out, "frame", output->index), output->planes);
+    session_.recycle(std::move(output->planes));
+    result_.core_ms.push_back(output->timing.core);
+    result_.total_ms.push_back(output->timing.total);
+    result_.preset = output->preset;
+    for (const auto& repair : output->repaired) result_.non_finite_in += repair.values;
+    result_.non_finite_out += output->non_finite_out;
+    progress_.update(++result_.frames);
+    return true;
+  }
+
+  const SequenceReader& sequence_;
+  const ReplayOptions& options_;
+  const std::vector<std::int64_t> frames_;
+  client::Session session_;
+  Progress progress_;
+  ReplayResult result_;
+};
+
+/// The smallest value that `fraction` of the values do not exceed (nearest rank).
+double percentile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+nlohmann::json percentiles(const std::vector<double>& values) {
+  return {{"p50", percentile(values, 0.50)},
+          {"p95", percentile(values, 0.95)},
+          {"p99", percentile(values, 0.99)}};
+}
+
+}  // namespace
+
+ReplayResult replay_sequence(const ReplayOptions& options) {
+  const SequenceReader sequence(options.dir);
+  std::optional<EmbeddedServer> embedded;
+  if (options.server.empty()) embedded.emplace(options.threads);
+  try {
+    return Replay(sequence, options, embedded ? embedded->address() : options.server).run();
+  } catch (const client::ConnectionError& error) {
+    throw ServerUnreachable(error.what());
+  } catch (const client::RefusedError& error) {
+    throw ServerUnreachable(error.what());
+  }
+}
+
+nlohmann::json replay_json(const ReplayResult& result) {
+  return {{"frames", result.frames},
+          {"recipe", result.recipe},
+          {"preset", result.preset},
+          {"width", result.width},
+          {"height", result.height},
+          {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},
+          {"bytes_in", result.bytes_in},
+          {"bytes_out", result.bytes_out},
+          {"non_finite_in", result.non_finite_in},
+          {"non_finite_out", result.non_finite_out}};
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/frame/error.h"
+#include "core/frame/frame.h"
+
+/// The client library: a session on a Holdfast server, into which a renderer streams noisy frames
+/// and from which it receives clean ones.
+namespace holdfast::client {
+
+/// The server cannot be reached, or the connection was lost.
+struct ConnectionError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The server was reached and refuses: a limit, a shutdown, a session that it does not know.
+struct RefusedError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What is fixed for the life of a session.
+struct SessionOptions {
+  std::string address = "127.0.0.1:50051";  ///< host:port or unix:PATH
+  std::chrono::milliseconds connect_timeout{5000};
+
+  int width = 0;                 ///< pixels, 1..kMaxDimension
+  int height = 0;                ///< pixels, 1..kMaxDimension
+  std::vector<Light> lights;     ///< each id at most once
+  std::vector<PlaneId> planes;   ///< exactly what every frame brings; depth and normal at least
+  std::string recipe;            ///< empty = the server's default
+  std::string preset;            ///< empty = the server's default
+  std::uint64_t seed = 0;        ///< the same seed gives the same bits
+  bool debug_planes = false;     ///< also motion, history and confidence of each component
+  double budget_ms = 0;          ///< wished time of a frame in the core; 0 = none
+  std::string wire = "exact";    ///< name of the wire profile
+  std::vector<PlaneId> results;  ///< result planes to send back; empty = all
+};
+
+/// Where the time of a frame went, milliseconds. All but `total` by the server's clock.
+struct FrameTiming {
+  struct Stage {
+    std::string name;
+    double ms = 0;
+  };
+  double receive = 0;         ///< from the frame's first message to its last, at the server
+  double wait = 0;            ///< from then to the start of filtering
+  double core = 0;            ///< inside the denoiser
+  std::vector<Stage> stages;  ///< parts of core
+  double total = 0;           ///< from submit to the last byte of the results, by our clock
+};
+
+/// Why a frame has no results. Later frames are not affected.
+struct FrameFailure {
+  std::string message;
+  std::optional<InputError> input;  ///< the rule that the frame broke; nothing if the server failed
+};
+
+/// The answer to one frame.
+struct FrameOutput {
+  struct Repair {
+    std::string plane;
+    std::uint64_t values = 0;
+  };
+  std::int64_t index = 0;
+  std::optional<FrameFailure> error;  ///< then `planes` is empty
+  PlaneSet planes;                    ///< the results
+  FrameTiming timing;
+  bool history_reset = false;
+  double mean_history_frames = 0;     ///< over surface pixels and components
+  std::string preset;                 ///< that was used
+  std::vector<Repair> repaired;       ///< values that were not finite or out of range, by plane
+  std::uint64_t non_finite_out = 0;
+};
+
+/// Plane bytes that crossed the wire.
+struct Traffic {
+  std::uint64_t sent = 0;
+  std::uint64_t received = 0;
+};
+
+/// A session and its stream. Frames are answered in the order in which they were submitted. One
+/// thread may submit while another receives.
+class Session {
+ public:
+  /// Connects, makes the session, opens the stream. Throws ConnectionError, RefusedError, or
+  /// InputError naming what is wrong with the options.
+  explicit Session(const SessionOptions& options);
+  /// Ends the session at once; what is in flight is lost.
+  ~Session();
+  Session(Session&&) noexcept;
+  Session& operator=(Session&&) noexcept;
+
+  /// Sends a frame; blocks while as many frames are in flight as the server gave credits. The
+  /// planes are read until the frame is answered: they must not change before. Throws InputError if
+  /// the planes are not those of the session; the session is then as before. Throws ConnectionError
+  /// or RefusedError if the stream has ended.
+  void submit(std::shared_ptr<const Frame> frame);
+  void submit(Frame&& frame);
+  /// The same, but returns false at once where `submit` would block.
+  bool try_submit(std::shared_ptr<const Frame> frame);
+
+  /// The next answer; waits for it. Nothing once all frames are answered after `finish`. Answers
+  /// are kept until they are received: whoever submits without receiving fills the memory. Throws
+  /// ConnectionError or RefusedError if the stream ended before all was answered.
+  std::optional<FrameOutput> receive();
+  /// The same, but returns nothing at once if there is no answer yet.
+  std::optional<FrameOutput> try_receive();
+
+  /// No more frames will be submitted.
+  void finish();
+  /// Ends the session in order: finishes, waits for what is in flight, deletes it on the server.
+  void close();
+
+  /// Gives result planes back, so that later results reuse their memory. Optional.
+  void recycle(PlaneSet&& planes);
+
+  /// Frames that may be in flight.
+  int credits() const;
+  /// Frames submitted and not yet answered.
+  int in_flight() const;
+  /// Result planes of each frame, in order.
+  const std::vector<PlaneId>& results() const;
+  const std::string& recipe() const;
+  const std::string& preset() const;
+  Traffic traffic() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace holdfast::client

@@ -1,0 +1,55 @@
+#include "client/sdk/result_assembler.h"
+
+#include "client/sdk/convert.h"
+#include "proto/plane_bytes.h"
+
+namespace holdfast::client {
+namespace {
+
+void require(bool condition, const char* rule) {
+  if (!condition) throw std::runtime_error(std::string("the server broke the protocol: ") + rule);
+}
+
+}  // namespace
+
+bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
+  require(!output_, "an answer began inside another");
+  output_.emplace();
+  read_frame_result(result, *output_);
+  plane_ = 0;
+  received_ = 0;
+  if (output_->error) return true;
+  require(result.planes_size() == static_cast<int>(results_.size()),
+          "an answer must announce all result planes");
+  output_->planes = std::move(reuse);
+  for (const PlaneId id : results_) {
+    const wire::PlaneSize size = wire::plane_size(id, width_, height_);
+    output_->planes.add(id, size.width, size.height);
+  }
+  return results_.empty();
+}
+
+bool ResultAssembler::add(const v1::PlaneChunk& chunk) {
+  require(output_.has_value(), "a chunk came outside an answer");
+  require(chunk.plane() == plane_ && chunk.offset() == received_,
+          "chunks must come in the order of the planes, without gaps");
+  Plane& plane = *output_->planes.find(results_[plane_]);
+  const std::uint64_t size = wire::plane_bytes(plane);
+  const std::uint64_t bytes = chunk.data().size();
+  require(bytes > 0 && bytes % 4 == 0 && bytes <= size - received_,
+          "a chunk must lie within its plane");
+  wire::write_plane_bytes(plane, received_, bytes, chunk.data().data());
+  received_ += bytes;
+  require(chunk.last() == (received_ == size), "the last chunk must end its plane");
+  if (received_ < size) return false;
+  received_ = 0;
+  return ++plane_ == results_.size();
+}
+
+FrameOutput ResultAssembler::take() {
+  FrameOutput output = std::move(*output_);
+  output_.reset();
+  return output;
+}
+
+}  // namespace holdfast::client

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <holdfast/client.h>
+
+#include "holdfast/v1/denoise_service.pb.h"
+
+namespace holdfast::client {
+
+/// Puts an answer together from its messages. Throws std::runtime_error if the server breaks the
+/// protocol; sizes follow from the session, never from the wire.
+class ResultAssembler {
+ public:
+  ResultAssembler(std::vector<PlaneId> results, int width, int height)
+      : results_(std::move(results)), width_(width), height_(height) {}
+
+  /// Starts an answer with FrameResult. `reuse`: planes whose memory it may take. True if the answer
+  /// is complete.
+  bool begin(const v1::FrameResult& result, PlaneSet&& reuse);
+  /// Adds a piece; true if the answer is complete.
+  bool add(const v1::PlaneChunk& chunk);
+  /// The complete answer.
+  FrameOutput take();
+
+ private:
+  const std::vector<PlaneId> results_;
+  const int width_, height_;
+  std::optional<FrameOutput> output_;
+  std::size_t plane_ = 0;
+  std::uint64_t received_ = 0;  ///< bytes of plane_
+};
+
+}  // namespace holdfast::client

@@ -1,0 +1,190 @@
+#include "server/convert.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/frame/conventions.h"
+#include "core/frame/error.h"
+#include "proto/plane_bytes.h"
+#include "server/config.h"
+
+namespace holdfast::server {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string quoted(const std::string& text) { return "\"" + text.substr(0, 64) + "\""; }
+
+/// `name` if it is one of `names`, `fallback` if it is empty.
+std::string checked_name(const char* subject, const std::string& name,
+                         const std::vector<std::string>& names, const std::string& fallback) {
+  if (name.empty()) return fallback;
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError(subject, "must be one of " + joined(names), quoted(name));
+  return name;
+}
+
+int checked_dimension(const char* subject, std::uint32_t value) {
+  if (value < 1 || value > static_cast<std::uint32_t>(kMaxDimension))
+    throw InputError(subject, "must be in 1.." + std::to_string(kMaxDimension),
+                     std::to_string(value));
+  return static_cast<int>(value);
+}
+
+LightShape shape_from(const v1::Light& light) {
+  switch (light.shape()) {
+    case v1::LIGHT_SHAPE_RECTANGLE: return LightShape::kRectangle;
+    case v1::LIGHT_SHAPE_DISK: return LightShape::kDisk;
+    case v1::LIGHT_SHAPE_SPHERE: return LightShape::kSphere;
+    case v1::LIGHT_SHAPE_POINT: return LightShape::kPoint;
+    case v1::LIGHT_SHAPE_DIRECTIONAL: return LightShape::kDirectional;
+    default:
+      throw InputError("shape of light " + std::to_string(light.id()), "must be set to a known shape",
+                       std::to_string(static_cast<int>(light.shape())));
+  }
+}
+
+std::vector<PlaneId> planes_from(const google::protobuf::RepeatedPtrField<std::string>& names) {
+  std::vector<PlaneId> planes;
+  for (const std::string& name : names) {
+    const std::optional<PlaneId> id = plane_from_name(name);
+    if (!id) throw InputError("plane " + quoted(name), "must be a plane of the format", "unknown");
+    if (std::find(planes.begin(), planes.end(), *id) != planes.end())
+      throw InputError("plane " + name, "must be declared once", "declared twice");
+    planes.push_back(*id);
+  }
+  return planes;
+}
+
+/// The planes to send: all, or those asked for, in the core's order.
+std::vector<PlaneId> results_from(const v1::CreateSessionRequest& request,
+                                  const DenoiserConfig& config) {
+  std::vector<PlaneId> all = result_planes(config);
+  if (request.result_planes().empty()) return all;
+  std::vector<std::string> names;
+  for (const PlaneId id : all) names.push_back(plane_name(id));
+  for (const std::string& name : request.result_planes())
+    checked_name("result plane", name.empty() ? "\"\"" : name, names, {});
+  std::erase_if(all, [&](PlaneId id) {
+    const auto& wanted = request.result_planes();
+    return std::find(wanted.begin(), wanted.end(), plane_name(id)) == wanted.end();
+  });
+  return all;
+}
+
+glm::dmat4 matrix_from(const std::string& subject, bool present, const v1::Matrix4& matrix) {
+  if (!present) throw InputError(subject, "must be present", "missing");
+  if (matrix.values_size() != 16)
+    throw InputError(subject, "must have 16 numbers", std::to_string(matrix.values_size()));
+  return matrix_from_row_major(matrix.values().data());
+}
+
+void read_transforms(const char* what,
+                     const google::protobuf::RepeatedPtrField<v1::Transform>& transforms,
+                     TransformTable& table) {
+  table.clear();
+  for (const v1::Transform& t : transforms) {
+    const std::string subject = what + std::to_string(t.id());
+    const glm::dmat4 matrix = matrix_from("transform of " + subject, t.has_world_from_local(),
+                                          t.world_from_local());
+    if (!table.emplace(t.id(), matrix).second)
+      throw InputError(subject, "must be listed once in a frame", "listed twice");
+  }
+}
+
+double ms_between(FrameSlot::TimePoint a, FrameSlot::TimePoint b) {
+  return std::chrono::duration<double, std::milli>(b - a).count();
+}
+
+}  // namespace
+
+const std::vector<std::string>& wire_names() {
+  static const std::vector<std::string> names{"exact"};
+  return names;
+}
+
+SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
+  SessionConfig config;
+  DenoiserConfig& core = config.denoiser;
+  core.width = checked_dimension("width", request.width_px());
+  core.height = checked_dimension("height", request.height_px());
+  if (request.lights_size() > kMaxLights)
+    throw InputError("number of lights", "must be at most " + std::to_string(kMaxLights),
+                     std::to_string(request.lights_size()));
+  for (const v1::Light& light : request.lights())
+    core.lights.push_back(
+        {light.id(), shape_from(light), light.width_m(), light.height_m(), light.radius()});
+  core.planes = planes_from(request.planes());
+  core.recipe = checked_name("recipe", request.recipe(), recipe_names(), core.recipe);
+  core.preset = checked_name("preset", request.preset(), preset_names(), core.preset);
+  core.seed = request.seed();
+  core.debug_planes = request.debug_planes();
+  config.wire = checked_name("wire", request.wire(), wire_names(), config.wire);
+  config.budget_ms = request.budget_ms();
+  if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
+    throw InputError("budget", "must be finite and at least 0 ms", std::to_string(config.budget_ms));
+  config.results = results_from(request, core);
+  return config;
+}
+
+void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config, Frame& frame) {
+  frame.index = begin.index();
+  frame.cut = begin.cut();
+  const std::string subject = "camera of frame " + std::to_string(begin.index());
+  if (!begin.has_camera()) throw InputError(subject, "must be present", "missing");
+  const v1::Camera& camera = begin.camera();
+  frame.camera.view_from_world = matrix_from("view_from_world of " + subject,
+                                             camera.has_view_from_world(), camera.view_from_world());
+  frame.camera.clip_from_view = matrix_from("clip_from_view of " + subject,
+                                            camera.has_clip_from_view(), camera.clip_from_view());
+  frame.camera.jitter_px = {camera.jitter_x_px(), camera.jitter_y_px()};
+  read_transforms("object ", begin.objects(), frame.objects);
+  read_transforms("light ", begin.lights(), frame.lights);
+  for (const auto& entry : frame.lights) {
+    const auto& lights = config.denoiser.lights;
+    if (std::none_of(lights.begin(), lights.end(),
+                     [&](const Light& light) { return light.id == entry.first; }))
+      throw InputError("light " + std::to_string(entry.first), "must be a light of the session",
+                       "unknown");
+  }
+}
+
+void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
+                        v1::FrameResult& result) {
+  result.set_index(slot.frame.index);
+  result.set_preset(config.denoiser.preset);
+  v1::FrameTiming& timing = *result.mutable_timing();
+  timing.set_receive_ms(ms_between(slot.begun, slot.ended));
+  timing.set_wait_ms(ms_between(slot.ended, slot.started));
+  if (slot.error) {
+    *result.mutable_error() = *slot.error;
+    return;
+  }
+  timing.set_core_ms(slot.report.ms);
+  for (const StageTime& stage : slot.report.stages) {
+    v1::StageTime& out = *timing.add_stages();
+    out.set_stage(stage.stage);
+    out.set_ms(stage.ms);
+  }
+  for (std::size_t i = 0; i < config.results.size(); ++i) {
+    const Plane& plane = slot.results.at(config.results[i]);
+    v1::FramePlane& out = *result.add_planes();
+    out.set_plane(static_cast<std::uint32_t>(i));
+    out.set_width_px(static_cast<std::uint32_t>(plane.width()));
+    out.set_height_px(static_cast<std::uint32_t>(plane.height()));
+  }
+  result.set_history_reset(slot.report.history_reset);
+  result.set_mean_history_frames(slot.report.mean_history_frames);
+  for (const RepairCount& repair : slot.report.repaired) {
+    v1::RepairCount& out = *result.add_repaired();
+    out.set_plane(plane_name(repair.plane));
+    out.set_values(repair.values);
+  }
+  result.set_non_finite_out(slot.report.non_finite_out);
+}
+
+}  // namespace holdfast::server

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "holdfast/v1/denoise_service.pb.h"
+#include "holdfast/v1/session_service.pb.h"
+#include "server/frame_slot.h"
+#include "server/session.h"
+
+/// Protocol <-> core on the server's side. Everything that comes from the wire is checked here, or
+/// by the core behind it, before anything of its size is allocated.
+namespace holdfast::server {
+
+/// Names accepted as CreateSessionRequest.wire.
+const std::vector<std::string>& wire_names();
+
+/// Throws InputError naming what breaks a rule.
+SessionConfig session_config_from(const v1::CreateSessionRequest& request);
+
+/// Index, cut, camera and transforms of a frame; its planes are untouched. Throws InputError.
+void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config, Frame& frame);
+
+/// The message that answers a frame, with or without an error.
+void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
+                        v1::FrameResult& result);
+
+}  // namespace holdfast::server

@@ -1,0 +1,267 @@
+#include "server/denoise_stream.h"
+
+#include "core/frame/error.h"
+#include "proto/plane_bytes.h"
+#include "server/error.h"
+#include "server/status.h"
+
+namespace holdfast::server {
+
+using Clock = std::chrono::steady_clock;
+
+DenoiseStream* DenoiseStream::start(ServiceState& state) {
+  const std::shared_ptr<DenoiseStream> stream(new DenoiseStream(state));
+  stream->self_ = stream;
+  const bool admitted = state.streams.add(stream);
+  std::unique_lock lock(stream->mutex_);
+  if (admitted)
+    stream->read_on();
+  else
+    stream->end(status_from(std::make_exception_ptr(
+        RefusedError(Refusal::kDraining, "the server is shutting down"))));
+  stream->unlock_and_finish(lock);
+  return stream.get();
+}
+
+// --- reading -------------------------------------------------------------------------------------
+
+void DenoiseStream::OnReadDone(bool ok) {
+  std::unique_lock lock(mutex_);
+  reading_ = false;
+  if (!ok) {
+    read_all_ = true;
+    if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
+  } else if (!read_all_ && !broken_) {
+    try {
+      const bool more = handle_request();
+      if (closing_ && assembler_ && !assembler_->open()) end(status_);
+      if (more) read_on();
+    } catch (...) {
+      end(status_from(std::current_exception()));
+    }
+  }
+  unlock_and_finish(lock);
+}
+
+/// True if the next message may be read.
+bool DenoiseStream::handle_request() {
+  using Message = v1::DenoiseRequest;
+  const auto kind = request_.message_case();
+  if (!session_) {
+    if (kind != Message::kHello)
+      throw InputError("first message of a stream", "must be Hello", "another");
+    handle_hello(request_.hello());
+    return true;
+  }
+  if (kind == Message::kFrameBegin) return handle_frame_begin(request_.frame_begin());
+  if (kind == Message::kHello) throw InputError("Hello", "must be sent once", "sent again");
+  if (kind == Message::MESSAGE_NOT_SET)
+    throw InputError("message", "must be Hello, FrameBegin, PlaneChunk or FrameEnd", "empty");
+  if (!assembler_->open())
+    throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
+                     "must be inside a frame", "outside");
+  if (kind == Message::kPlaneChunk)
+    assembler_->add(request_.plane_chunk());
+  else
+    post(assembler_->end(request_.frame_end()));
+  return true;
+}
+
+void DenoiseStream::handle_hello(const v1::Hello& hello) {
+  session_ = state_.sessions.attach(hello.session_id(), hello.token());
+  assembler_.emplace(session_->config());
+  const SessionCounters counters = session_->counters();
+  v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
+  welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
+  welcome.set_resumed(counters.last_frame.has_value());
+  welcome.set_last_frame_index(counters.last_frame.value_or(0));
+  state_.log->info("event=stream_open session={} resumed={}", session_->id(), welcome.resumed());
+  write_on();
+}
+
+/// True if the frame was begun; false if it has to wait for a slot.
+bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
+  if (assembler_->open()) post(assembler_->abandon("another FrameBegin"));
+  FrameSlot* const slot = free_slot();
+  stalled_ = slot == nullptr;
+  if (slot) assembler_->begin(begin, *slot);
+  return slot != nullptr;
+}
+
+FrameSlot* DenoiseStream::free_slot() {
+  if (free_.empty()) {
+    if (slots_.size() == static_cast<std::size_t>(state_.config.limits.credits)) return nullptr;
+    free_.push_back(slots_.emplace_back(std::make_unique<FrameSlot>()).get());
+  }
+  FrameSlot* const slot = free_.back();
+  free_.pop_back();
+  return slot;
+}
+
+void DenoiseStream::read_on() {
+  if (reading_ || stalled_ || read_all_ || broken_ || finished_) return;
+  reading_ = true;
+  StartRead(&request_);
+}
+
+// --- filtering -----------------------------------------------------------------------------------
+
+void DenoiseStream::post(FrameSlot& slot) {
+  state_.scheduler.post(session_->strand(),
+                        [self = shared_from_this(), &slot] { self->filter(slot); });
+}
+
+void DenoiseStream::filter(FrameSlot& slot) {
+  slot.started = Clock::now();
+  bool wanted = true;
+  {
+    const std::lock_guard lock(mutex_);
+    wanted = !broken_;
+  }
+  if (wanted && slot.error) session_->count_error();
+  if (wanted && !slot.error) try {
+      slot.report = session_->filter(slot.frame, slot.results);
+    } catch (...) {
+      slot.error = frame_error_from(std::current_exception());
+    }
+  if (wanted) log_frame(slot);
+  std::unique_lock lock(mutex_);
+  if (broken_) {
+    release(slot);
+  } else {
+    sending_.push_back(&slot);
+    write_on();
+  }
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::log_frame(const FrameSlot& slot) const {
+  if (slot.error)
+    state_.log->warn("event=frame_error session={} frame={} error=\"{}\"", session_->id(),
+                     slot.frame.index, slot.error->message());
+  else
+    state_.log->debug("event=frame session={} frame={} core_ms={:.2f} reset={}", session_->id(),
+                      slot.frame.index, slot.report.ms, slot.report.history_reset);
+}
+
+// --- writing -------------------------------------------------------------------------------------
+
+void DenoiseStream::OnWriteDone(bool ok) {
+  std::unique_lock lock(mutex_);
+  writing_ = false;
+  if (!ok) broken_ = true;
+  if (broken_)
+    drop_unsent();
+  else
+    write_on();
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::write_on() {
+  if (writing_ || broken_ || finished_) return;
+  writing_ = next_response();
+  if (writing_) StartWrite(&response_);
+}
+
+/// Fills `response_`; false if there is nothing to send.
+bool DenoiseStream::next_response() {
+  if (!notices_.empty()) {
+    response_ = std::move(notices_.front());
+    notices_.pop_front();
+    return true;
+  }
+  while (!sending_.empty()) {
+    if (!sender_) sender_.emplace(*sending_.front(), session_->config());
+    if (sender_->next(response_)) return true;
+    sender_.reset();
+    FrameSlot& sent = *sending_.front();
+    sending_.pop_front();
+    release(sent);
+  }
+  return false;
+}
+
+/// Makes the slot free and lets a waiting FrameBegin have it.
+void DenoiseStream::release(FrameSlot& slot) {
+  free_.push_back(&slot);
+  if (!stalled_) return;
+  stalled_ = false;
+  if (read_all_ || broken_) return;
+  handle_frame_begin(request_.frame_begin());
+  read_on();
+}
+
+void DenoiseStream::drop_unsent() {
+  sender_.reset();
+  notices_.clear();
+  free_.insert(free_.end(), sending_.begin(), sending_.end());
+  sending_.clear();
+}
+
+// --- ending --------------------------------------------------------------------------------------
+
+void DenoiseStream::OnCancel() {
+  std::unique_lock lock(mutex_);
+  broken_ = true;
+  if (!writing_) drop_unsent();  // else the message being written may belong to a slot
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::drain(std::chrono::milliseconds deadline) {
+  std::unique_lock lock(mutex_);
+  notices_.emplace_back().mutable_draining()->set_deadline_ms(
+      static_cast<std::uint32_t>(deadline.count()));
+  write_on();
+  lock.unlock();
+  close(status_from(std::make_exception_ptr(
+      RefusedError(Refusal::kDraining, "the server is shutting down"))));
+}
+
+void DenoiseStream::close(const grpc::Status& status) {
+  std::unique_lock lock(mutex_);
+  closing_ = true;
+  if (status_.ok()) status_ = status;
+  if (!assembler_ || !assembler_->open()) end(status);
+  unlock_and_finish(lock);
+}
+
+/// Nothing more is read; what is in flight is still answered.
+void DenoiseStream::end(const grpc::Status& status) {
+  if (status_.ok()) status_ = status;
+  read_all_ = true;
+  stalled_ = false;
+  if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
+}
+
+bool DenoiseStream::ready_to_finish() {
+  if (finished_ || writing_ || !(read_all_ || broken_)) return false;
+  if (broken_ && assembler_ && assembler_->open()) release(assembler_->abandon("a disconnect"));
+  return free_.size() == slots_.size() && sending_.empty() && notices_.empty();
+}
+
+void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {
+  const bool now = ready_to_finish();
+  if (now) {
+    finished_ = true;
+    if (session_) {
+      state_.sessions.detach(*session_);
+      state_.log->info("event=stream_end session={} broken={} status={}", session_->id(), broken_,
+                       static_cast<int>(status_.error_code()));
+    }
+  }
+  const grpc::Status status = status_;
+  lock.unlock();
+  if (now) Finish(status);
+}
+
+void DenoiseStream::OnDone() {
+  state_.streams.remove(this);
+  self_.reset();  // deletes this, unless a job is just returning
+}
+
+std::string DenoiseStream::session_id() const {
+  const std::lock_guard lock(mutex_);
+  return session_ ? session_->id() : std::string();
+}
+
+}  // namespace holdfast::server

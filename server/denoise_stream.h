@@ -1,0 +1,96 @@
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <grpcpp/support/server_callback.h>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/v1/denoise_service.pb.h"
+#include "server/frame_assembler.h"
+#include "server/result_sender.h"
+#include "server/service_state.h"
+
+namespace holdfast::server {
+
+/// One Denoise stream: reads messages into frames, hands frames to the worker pool, sends results.
+///
+///   read Hello -> Welcome
+///   read FrameBegin -> takes a free slot; if there is none, reading stops until one is free, and
+///                      HTTP/2 flow control stops the client: that is the backpressure
+///   read chunks, FrameEnd -> the slot joins the session's strand (also if it has an error, so that
+///                      answers keep the order of the frames)
+///   job done -> the slot joins the sending queue; when its last message is written it is free
+///
+/// Reactions and jobs run on different threads; one mutex guards everything. The reactor keeps
+/// itself alive until OnDone, jobs keep it alive while they run. Finish is called when no slot is
+/// in use and nothing is being written.
+class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse>,
+                            public std::enable_shared_from_this<DenoiseStream> {
+ public:
+  /// Makes the stream and starts it.
+  static DenoiseStream* start(ServiceState& state);
+
+  /// Announces the shutdown, answers the frames in flight, then ends the stream.
+  void drain(std::chrono::milliseconds deadline);
+  /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks are
+  /// still coming in; later frames are not accepted.
+  void close(const grpc::Status& status);
+  /// Empty before Hello.
+  std::string session_id() const;
+
+  void OnReadDone(bool ok) override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  explicit DenoiseStream(ServiceState& state) : state_(state) {}
+
+  // All of these are called with the mutex held.
+  bool handle_request();
+  void handle_hello(const v1::Hello& hello);
+  bool handle_frame_begin(const v1::FrameBegin& begin);
+  FrameSlot* free_slot();
+  void post(FrameSlot& slot);
+  void read_on();
+  void write_on();
+  bool next_response();
+  void release(FrameSlot& slot);
+  void drop_unsent();
+  void end(const grpc::Status& status);
+  [[nodiscard]] bool ready_to_finish();
+
+  /// The job of one frame; runs on the worker pool.
+  void filter(FrameSlot& slot);
+  /// Takes the mutex off and calls Finish if everything is done.
+  void unlock_and_finish(std::unique_lock<std::mutex>& lock);
+  void log_frame(const FrameSlot& slot) const;
+
+  ServiceState& state_;
+  std::shared_ptr<DenoiseStream> self_;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<Session> session_;
+  std::optional<FrameAssembler> assembler_;
+  std::vector<std::unique_ptr<FrameSlot>> slots_;
+  std::vector<FrameSlot*> free_;
+  std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
+  std::optional<ResultSender> sender_;
+  std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
+  v1::DenoiseRequest request_;
+  v1::DenoiseResponse response_;
+  bool reading_ = false;    ///< a read is under way
+  bool stalled_ = false;    ///< request_ holds a FrameBegin that waits for a slot
+  bool writing_ = false;    ///< a write is under way
+  bool read_all_ = false;   ///< the client has ended its side, or nothing more is to be read
+  bool closing_ = false;    ///< ends after the frame that is being read
+  bool broken_ = false;     ///< cancelled or disconnected: nothing can be sent
+  bool finished_ = false;   ///< Finish was called
+  grpc::Status status_;
+};
+
+}  // namespace holdfast::server

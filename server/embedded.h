@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace holdfast::server {
+
+/// A server in this process, reached through gRPC over a unix socket in a private directory. The
+/// only header of the server that a client program may include.
+class EmbeddedServer {
+ public:
+  /// `threads` that filter, 0 = one for each core. `log_level` as in ServerConfig.
+  explicit EmbeddedServer(int threads = 0, const std::string& log_level = "warn");
+  /// Stops the server and removes the socket.
+  ~EmbeddedServer();
+
+  const std::string& address() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace holdfast::server

@@ -1,0 +1,72 @@
+#include "server/scheduler.h"
+
+#include <algorithm>
+
+namespace holdfast::server {
+namespace {
+
+int thread_count(int threads) {
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// A quarter of the threads lead: a frame alone then has most of the machine, and short frames of
+/// many sessions still run side by side. Ours.
+int leader_count(int threads) { return std::max(1, threads / 4); }
+
+}  // namespace
+
+Scheduler::Scheduler(int threads)
+    : threads_(thread_count(threads)),
+      leaders_(leader_count(threads_)),
+      arena_(threads_, static_cast<unsigned>(leaders_)) {
+  // oneTBB makes one worker less than there are cores; more must be asked for.
+  if (threads_ > static_cast<int>(std::thread::hardware_concurrency()))
+    more_workers_.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                          static_cast<std::size_t>(threads_));
+  for (int i = 0; i < leaders_; ++i) pool_.emplace_back([this] { lead(); });
+}
+
+Scheduler::~Scheduler() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  for (std::thread& thread : pool_) thread.join();
+}
+
+void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()> job) {
+  {
+    const std::lock_guard lock(mutex_);
+    strand->jobs_.push_back(std::move(job));
+    if (strand->ready_) return;
+    strand->ready_ = true;
+    line_.push_back(strand);
+  }
+  wake_.notify_one();
+}
+
+void Scheduler::lead() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [this] { return stopping_ || !line_.empty(); });
+    if (line_.empty()) return;
+    const std::shared_ptr<Strand> strand = std::move(line_.front());
+    line_.pop_front();
+    std::function<void()> job = std::move(strand->jobs_.front());
+    strand->jobs_.pop_front();
+    lock.unlock();
+    // Isolated: while this thread waits for the end of its own loop it takes no other frame's work.
+    arena_.execute([&] { oneapi::tbb::this_task_arena::isolate(job); });
+    job = nullptr;  // what it holds is released before anyone can see the strand idle
+    lock.lock();
+    if (strand->jobs_.empty()) {
+      strand->ready_ = false;
+    } else {
+      line_.push_back(strand);
+      wake_.notify_one();
+    }
+  }
+}
+
+}  // namespace holdfast::server

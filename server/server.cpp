@@ -1,0 +1,136 @@
+#include "server/server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "core/frame/error.h"
+#include "proto/plane_bytes.h"
+#include "server/denoise_service.h"
+#include "server/listen_address.h"
+#include "server/log.h"
+#include "server/session_service.h"
+#include "server/version.h"
+
+namespace holdfast::server {
+namespace {
+
+constexpr int kHttp2FrameBytes = 1 << 20;  // fewer, larger frames: less CPU for large messages
+constexpr std::chrono::seconds kExpiryPeriod{1};
+
+const ServerConfig& checked(const ServerConfig& config) {
+  if (config.threads < 0)
+    throw InputError("threads", "must be at least 0", std::to_string(config.threads));
+  if (config.limits.credits < 1)
+    throw InputError("credits", "must be at least 1", std::to_string(config.limits.credits));
+  check_listen_address(config.listen);
+  return config;
+}
+
+/// Calls `work` once a period on a thread of its own, until destroyed.
+class Timer {
+ public:
+  template <class F>
+  Timer(std::chrono::milliseconds period, F work) : thread_([this, period, work] {
+    std::unique_lock lock(mutex_);
+    while (!wake_.wait_for(lock, period, [this] { return stopping_; })) work();
+  }) {}
+  ~Timer() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+    thread_.join();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace
+
+class Server::Impl {
+ public:
+  explicit Impl(const ServerConfig& config)
+      : state_(checked(config), make_logger(config.log_level)),
+        session_service_(state_),
+        denoise_service_(state_) {
+    start();
+    expiry_.emplace(kExpiryPeriod, [this] {
+      if (const int ended = state_.sessions.expire(); ended > 0)
+        state_.log->info("event=session_expire count={}", ended);
+    });
+  }
+
+  ~Impl() {
+    server_->Shutdown(std::chrono::system_clock::now());
+    server_->Wait();
+    // A stream is gone only after its OnDone, which may run after Wait.
+    state_.streams.wait_empty(std::chrono::seconds(10));
+    state_.log->info("event=stopped address={}", address_);
+  }
+
+  void drain(std::chrono::milliseconds deadline) {
+    state_.log->info("event=drain deadline_ms={} sessions={}", deadline.count(),
+                     state_.sessions.size());
+    state_.draining = true;
+    if (auto* health = server_->GetHealthCheckService()) health->SetServingStatus(false);
+    state_.streams.drain(deadline);
+    if (!state_.streams.wait_empty(deadline))
+      state_.log->warn("event=drain_deadline: open streams are cut");
+  }
+
+  const std::string& address() const { return address_; }
+
+ private:
+  void start() {
+    const std::string& listen = state_.config.listen;
+    grpc::EnableDefaultHealthCheckService(true);
+    grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort(listen, grpc::InsecureServerCredentials(), &port);
+    builder.SetMaxReceiveMessageSize(wire::kMaxMessageBytes);
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
+    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+    // The probe finds the window of a long link; a unix socket has none to find.
+    if (listen.starts_with("unix:")) {
+      builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+      builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, wire::kMaxMessageBytes);
+    }
+    builder.RegisterService(&session_service_);
+    builder.RegisterService(&denoise_service_);
+    server_ = builder.BuildAndStart();
+    if (!server_) throw InputError("listen address " + listen, "must be free", "not available");
+    address_ = listen;
+    if (!listen.starts_with("unix:"))
+      address_ = listen.substr(0, listen.rfind(':') + 1) + std::to_string(port);
+    if (auto* health = server_->GetHealthCheckService()) health->SetServingStatus(true);
+    state_.log->info("event=listening address={} threads={} version={}", address_,
+                     state_.scheduler.threads(), kVersion);
+    if (!is_local_address(listen))
+      state_.log->warn("event=exposed address={}: traffic is neither encrypted nor authenticated",
+                       address_);
+  }
+
+  ServiceState state_;
+  SessionService session_service_;
+  DenoiseService denoise_service_;
+  std::string address_;
+  std::unique_ptr<grpc::Server> server_;
+  std::optional<Timer> expiry_;
+};
+
+Server::Server(const ServerConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Server::~Server() = default;
+const std::string& Server::address() const { return impl_->address(); }
+void Server::drain(std::chrono::milliseconds deadline) { impl_->drain(deadline); }
+
+}  // namespace holdfast::server

@@ -1,0 +1,94 @@
+#include "server/session_service.h"
+
+#include "proto/plane_bytes.h"
+#include "server/convert.h"
+#include "server/error.h"
+#include "server/status.h"
+#include "server/version.h"
+
+namespace holdfast::server {
+namespace {
+
+/// Runs `work` and ends the call with OK or with the translation of what it threw.
+template <class F>
+grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, F&& work) {
+  grpc::Status status;
+  try {
+    work();
+  } catch (...) {
+    status = status_from(std::current_exception());
+  }
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  reactor->Finish(status);
+  return reactor;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerContext* context,
+                                                        const v1::GetServerInfoRequest*,
+                                                        v1::GetServerInfoResponse* response) {
+  return answer(context, [&] {
+    response->set_version(kVersion);
+    for (const std::string& name : recipe_names()) response->add_recipes(name);
+    for (const std::string& name : preset_names()) response->add_presets(name);
+    for (const std::string& name : wire_names()) response->add_wires(name);
+    response->set_max_dimension_px(kMaxDimension);
+    response->set_max_chunk_bytes(wire::kMaxChunkBytes);
+    response->set_max_sessions(static_cast<std::uint32_t>(state_.config.limits.max_sessions));
+    response->set_sessions(static_cast<std::uint32_t>(state_.sessions.size()));
+    response->set_threads(static_cast<std::uint32_t>(state_.scheduler.threads()));
+  });
+}
+
+grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerContext* context,
+                                                        const v1::CreateSessionRequest* request,
+                                                        v1::CreateSessionResponse* response) {
+  return answer(context, [&] {
+    if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
+    const auto session = state_.sessions.create(session_config_from(*request));
+    const SessionConfig& config = session->config();
+    response->set_session_id(session->id());
+    response->set_token(session->token());
+    response->set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
+    response->set_max_chunk_bytes(wire::kMaxChunkBytes);
+    for (const PlaneId id : config.results) response->add_result_planes(plane_name(id));
+    response->set_linger_ms(static_cast<std::uint32_t>(state_.config.limits.linger.count()));
+    response->set_recipe(config.denoiser.recipe);
+    response->set_preset(config.denoiser.preset);
+    response->set_memory_bytes(state_.sessions.bytes(*session));
+    state_.log->info("event=session_create session={} size={}x{} planes={} recipe={} preset={} "
+                     "budget_ms={} memory_mib={}",
+                     session->id(), config.denoiser.width, config.denoiser.height,
+                     config.denoiser.planes.size(), config.denoiser.recipe,
+                     config.denoiser.preset, config.budget_ms, response->memory_bytes() >> 20);
+  });
+}
+
+grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext* context,
+                                                     const v1::GetSessionRequest* request,
+                                                     v1::GetSessionResponse* response) {
+  return answer(context, [&] {
+    const auto session = state_.sessions.find(request->session_id(), request->token());
+    const SessionCounters counters = session->counters();
+    response->set_streaming(state_.sessions.attached(*session));
+    response->set_has_last_frame(counters.last_frame.has_value());
+    response->set_last_frame_index(counters.last_frame.value_or(0));
+    response->set_frames(counters.frames);
+    response->set_frame_errors(counters.frame_errors);
+    response->set_memory_bytes(state_.sessions.bytes(*session));
+    response->set_plan(session->plan_text());
+  });
+}
+
+grpc::ServerUnaryReactor* SessionService::DeleteSession(grpc::CallbackServerContext* context,
+                                                        const v1::DeleteSessionRequest* request,
+                                                        v1::DeleteSessionResponse*) {
+  return answer(context, [&] {
+    state_.sessions.remove(request->session_id(), request->token());
+    state_.streams.close_session(request->session_id());
+    state_.log->info("event=session_delete session={}", request->session_id());
+  });
+}
+
+}  // namespace holdfast::server

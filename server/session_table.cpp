@@ -1,0 +1,150 @@
+#include "server/session_table.h"
+
+#include "server/error.h"
+#include "server/random_token.h"
+
+namespace holdfast::server {
+namespace {
+
+constexpr int kIdBytes = 8;      // enough to be unique; not a secret
+constexpr int kTokenBytes = 16;  // 128 bits: not to be guessed
+
+std::string mib(std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
+
+}  // namespace
+
+SessionTable::SessionTable(SessionLimits limits, Clock clock)
+    : limits_(limits), clock_(std::move(clock)) {}
+
+std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
+  const std::string id = random_hex(kIdBytes);
+  const auto credits = static_cast<std::size_t>(limits_.credits);
+  expire();
+  admit(id, frame_bytes(config.denoiser) * credits);
+  try {
+    auto session = std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config));
+    grow(id, session->denoiser_bytes());
+    const std::lock_guard lock(mutex_);
+    Entry& entry = entries_.at(id);
+    entry.session = session;
+    entry.detached_at = clock_();
+    return session;
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    total_bytes_ -= entries_.at(id).bytes;
+    entries_.erase(id);
+    throw;
+  }
+}
+
+void SessionTable::check_bytes(std::size_t session_bytes, std::size_t total_bytes) const {
+  if (session_bytes > limits_.max_session_bytes)
+    throw RefusedError(Refusal::kLimit, "the session needs " + mib(session_bytes) +
+                                            ", but one session may have " +
+                                            mib(limits_.max_session_bytes));
+  if (total_bytes > limits_.max_total_bytes)
+    throw RefusedError(Refusal::kLimit, "with this session all would have " + mib(total_bytes) +
+                                            ", but the server allows " +
+                                            mib(limits_.max_total_bytes));
+}
+
+void SessionTable::admit(const std::string& id, std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  if (entries_.size() >= limits_.max_sessions)
+    throw RefusedError(Refusal::kLimit, "the server has " + std::to_string(entries_.size()) +
+                                            " sessions, the most it allows");
+  check_bytes(bytes, total_bytes_ + bytes);
+  entries_[id].bytes = bytes;
+  total_bytes_ += bytes;
+}
+
+void SessionTable::grow(const std::string& id, std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_.at(id);
+  check_bytes(entry.bytes + bytes, total_bytes_ + bytes);
+  entry.bytes += bytes;
+  total_bytes_ += bytes;
+}
+
+const SessionTable::Entry& SessionTable::checked(const std::string& id,
+                                                 const std::string& token) const {
+  const auto it = entries_.find(id);
+  if (it == entries_.end() || !it->second.session)
+    throw RefusedError(Refusal::kUnknownSession,
+                       "session \"" + id.substr(0, 64) + "\" is unknown: never made, deleted or expired");
+  if (!equal_secrets(it->second.session->token(), token))
+    throw RefusedError(Refusal::kWrongToken, "the token is not that of session " + id);
+  return it->second;
+}
+
+std::shared_ptr<Session> SessionTable::find(const std::string& id, const std::string& token) const {
+  const std::lock_guard lock(mutex_);
+  return checked(id, token).session;
+}
+
+std::shared_ptr<Session> SessionTable::attach(const std::string& id, const std::string& token) {
+  expire();
+  const std::lock_guard lock(mutex_);
+  if (checked(id, token).attached)
+    throw RefusedError(Refusal::kBusy, "session " + id + " has a stream already");
+  Entry& entry = entries_.at(id);
+  entry.attached = true;
+  return entry.session;
+}
+
+void SessionTable::detach(const Session& session) {
+  const std::lock_guard lock(mutex_);
+  const auto it = entries_.find(session.id());
+  if (it == entries_.end()) return;
+  it->second.attached = false;
+  it->second.detached_at = clock_();
+}
+
+void SessionTable::remove(const std::string& id, const std::string& token) {
+  std::shared_ptr<Session> dying;  // freed after the lock: histories are large
+  const std::lock_guard lock(mutex_);
+  dying = checked(id, token).session;
+  total_bytes_ -= entries_.at(id).bytes;
+  entries_.erase(id);
+}
+
+int SessionTable::expire() {
+  std::vector<std::shared_ptr<Session>> dying;
+  const TimePoint now = clock_();
+  const std::lock_guard lock(mutex_);
+  for (auto it = entries_.begin(); it != entries_.end();) {
+    Entry& entry = it->second;
+    if (entry.session && !entry.attached && now - entry.detached_at >= limits_.linger) {
+      dying.push_back(std::move(entry.session));
+      total_bytes_ -= entry.bytes;
+      it = entries_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return static_cast<int>(dying.size());
+}
+
+bool SessionTable::attached(const Session& session) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = entries_.find(session.id());
+  return it != entries_.end() && it->second.attached;
+}
+
+std::size_t SessionTable::bytes(const Session& session) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = entries_.find(session.id());
+  return it == entries_.end() ? 0 : it->second.bytes;
+}
+
+std::size_t SessionTable::size() const {
+  const std::lock_guard lock(mutex_);
+  return entries_.size();
+}
+
+std::size_t SessionTable::total_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return total_bytes_;
+}
+
+}  // namespace holdfast::server

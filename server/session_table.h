@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "server/config.h"
+#include "server/session.h"
+
+namespace holdfast::server {
+
+/// All sessions of a server. Knows nothing of the network; the clock can be replaced in tests.
+/// Every function may be called from any thread.
+class SessionTable {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  using Clock = std::function<TimePoint()>;
+
+  explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
+
+  /// Makes a session with a random id and token. Its memory is counted before anything of its size
+  /// is allocated. Throws InputError for a bad configuration, RefusedError(kLimit) naming the limit.
+  std::shared_ptr<Session> create(SessionConfig config);
+
+  /// The session. Throws RefusedError(kUnknownSession, kWrongToken).
+  std::shared_ptr<Session> find(const std::string& id, const std::string& token) const;
+
+  /// The session, held for one stream until `detach`. Throws as `find`, and kBusy.
+  std::shared_ptr<Session> attach(const std::string& id, const std::string& token);
+  /// Ends the hold; the session then lingers. No effect if it was removed meanwhile.
+  void detach(const Session& session);
+
+  /// Ends a session at once. Throws as `find`.
+  void remove(const std::string& id, const std::string& token);
+  /// Ends the sessions that have lingered too long; their number.
+  int expire();
+
+  bool attached(const Session& session) const;
+  /// Bytes accounted to the session; 0 if it was removed.
+  std::size_t bytes(const Session& session) const;
+  std::size_t size() const;
+  std::size_t total_bytes() const;
+  const SessionLimits& limits() const { return limits_; }
+
+ private:
+  struct Entry {
+    std::shared_ptr<Session> session;  ///< null while it is being made
+    std::size_t bytes = 0;
+    bool attached = false;
+    TimePoint detached_at{};
+  };
+
+  const Entry& checked(const std::string& id, const std::string& token) const;
+  void admit(const std::string& id, std::size_t bytes);
+  void grow(const std::string& id, std::size_t bytes);
+  void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
+
+  const SessionLimits limits_;
+  const Clock clock_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Entry> entries_;
+  std::size_t total_bytes_ = 0;
+};
+
+}  // namespace holdfast::server

@@ -1,0 +1,47 @@
+#include "server/stream_registry.h"
+
+#include "server/denoise_stream.h"
+
+namespace holdfast::server {
+
+bool StreamRegistry::add(const std::shared_ptr<DenoiseStream>& stream) {
+  const std::lock_guard lock(mutex_);
+  if (draining_) return false;
+  streams_[stream.get()] = stream;
+  return true;
+}
+
+void StreamRegistry::remove(const DenoiseStream* stream) {
+  const std::lock_guard lock(mutex_);
+  streams_.erase(stream);
+  if (streams_.empty()) empty_.notify_all();
+}
+
+std::vector<std::shared_ptr<DenoiseStream>> StreamRegistry::all() const {
+  std::vector<std::shared_ptr<DenoiseStream>> out;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [key, weak] : streams_)
+    if (auto stream = weak.lock()) out.push_back(std::move(stream));
+  return out;
+}
+
+void StreamRegistry::close_session(const std::string& session_id) {
+  for (const auto& stream : all())
+    if (stream->session_id() == session_id)
+      stream->close({grpc::StatusCode::NOT_FOUND, "session " + session_id + " was deleted"});
+}
+
+void StreamRegistry::drain(std::chrono::milliseconds deadline) {
+  {
+    const std::lock_guard lock(mutex_);
+    draining_ = true;
+  }
+  for (const auto& stream : all()) stream->drain(deadline);
+}
+
+bool StreamRegistry::wait_empty(std::chrono::milliseconds deadline) {
+  std::unique_lock lock(mutex_);
+  return empty_.wait_for(lock, deadline, [this] { return streams_.empty(); });
+}
+
+}  // namespace holdfast::server

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace holdfast::server {
+
+class DenoiseStream;
+
+/// The open streams, so that a shutdown can drain them and DeleteSession can close one.
+class StreamRegistry {
+ public:
+  /// False, and the stream is not added, once `drain` was called.
+  bool add(const std::shared_ptr<DenoiseStream>& stream);
+  void remove(const DenoiseStream* stream);
+  /// Closes the stream of a session, if it has one.
+  void close_session(const std::string& session_id);
+  /// Asks every stream to finish the frames in flight and end; refuses new ones.
+  void drain(std::chrono::milliseconds deadline);
+  /// Waits until no stream is open; false if some are at the deadline.
+  bool wait_empty(std::chrono::milliseconds deadline);
+
+ private:
+  std::vector<std::shared_ptr<DenoiseStream>> all() const;
+
+  mutable std::mutex mutex_;
+  std::condition_variable empty_;
+  std::map<const DenoiseStream*, std::weak_ptr<DenoiseStream>> streams_;
+  bool draining_ = false;
+};
+
+}  // namespace holdfast::server
