@@ -13,9 +13,8 @@ namespace holdfast::cli {
 namespace {
 
 struct Options {
-  std::string test, reference, json, html;
+  std::string test, reference, json, html, mask = "image";
   std::vector<std::string> layers;
-  measure::Region region = measure::Region::kImage;
   bool no_flip = false, quiet = false;
 };
 
@@ -40,9 +39,9 @@ void run(const Options& options) {
   const measure::Comparison result = measure::compare(compare).front();
   progress.reset();
 
-  if (!options.json.empty()) write_json_file(options.json, comparison_json(result, options.region));
+  if (!options.json.empty()) write_json_file(options.json, comparison_json(result, region));
   if (!options.html.empty()) write_html(options, result);
-  if (!options.quiet) std::fputs(comparison_table(result, options.region).c_str(), stdout);
+  if (!options.quiet) std::fputs(comparison_table(result, region).c_str(), stdout);
 }
 
 }  // namespace
@@ -55,11 +54,11 @@ void add_compare(CLI::App& app) {
       ->required();
   command->add_option("--reference", options->reference, "Sequence with references")->required();
   command
-      ->add_option("--mask", options->region,
-                   "Pixels judged: image (all but sky) or effect (where the reference changed by "
+      ->add_option("--mask", options->mask,
+                   "Pixels judged: image (all but sky), or effect (where the reference changed by "
                    "more than 0.02)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, measure::Region>{
-          {"image", measure::Region::kImage}, {"effect", measure::Region::kEffect}}));
+      ->check(CLI::IsMember({"image", "effect"}))
+      ->capture_default_str();
   command->add_option("--layers", options->layers, "Layers judged, comma separated; all if absent")
       ->delimiter(',');
   command->add_flag("--no-flip", options->no_flip, "Leave out FLIP, which takes most of the time");

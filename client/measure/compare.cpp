@@ -133,6 +133,7 @@ std::vector<Comparison> compare(const CompareOptions& options) {
   for (const auto& test : meters) {
     Comparison& comparison = out.emplace_back();
     comparison.frames = static_cast<std::int64_t>(frames.size());
+    comparison.last_frame = frames.back().index;
     for (std::size_t i = 0; i < layers.size(); ++i)
       comparison.layers.push_back(
           {plane_name(layers[i]), measure_of(layers[i].kind), test[i].image(), test[i].effect()});

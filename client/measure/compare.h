@@ -23,7 +23,8 @@ struct CompareOptions {
 
 /// Errors of one result against the references, on the image and on the effect.
 struct Comparison {
-  std::int64_t frames = 0;  ///< judged
+  std::int64_t frames = 0;      ///< judged
+  std::int64_t last_frame = 0;  ///< index of the last one
   struct Layer {
     std::string name;
     Measure measure = Measure::kClip;

@@ -16,8 +16,7 @@ Plane noisy_plane(Frame& frame, PlaneId layer) {
 }  // namespace
 
 std::int64_t pictured_frame(const ReportScene& scene) {
-  const auto& layers = scene.results.front().comparison.layers;
-  return layers.front().image.per_frame.back().frame;
+  return scene.results.front().comparison.last_frame;
 }
 
 std::vector<LayerPictures> scene_pictures(const ReportScene& scene) {

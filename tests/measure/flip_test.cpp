@@ -122,6 +122,12 @@ TEST(Flip, BlackMedianIsReplacedByThatOfThePositiveLuminances) {
   for (const float exposure : exposures) EXPECT_TRUE(std::isfinite(exposure));
 }
 
+TEST(Flip, NumberOfExposuresIsBounded) {
+  Image image = test::constant(5, 1, {1e-9f, 1e-9f, 1e-9f});
+  for (int c = 0; c < 3; ++c) image.channel(c)[2] = 1e4f;
+  EXPECT_EQ(flip_exposures(image, test::all(image)).size(), std::size_t{kMostFlipExposures});
+}
+
 TEST(Flip, ExtremeRadianceGivesFiniteErrors) {
   Image reference = test::constant(8, 8, {1, 1, 1}), test = reference;
   test.values[0] = 1e30f;
