@@ -19,7 +19,7 @@ struct Options {
 };
 
 void write_html(const Options& options, const measure::Comparison& result) {
-  const auto name = std::filesystem::path(options.test).lexically_normal().filename().string();
+  const auto name = std::filesystem::canonical(options.test).filename().string();
   measure::write_report(
       options.html, "Holdfast: " + options.test + " against references",
       {{options.reference, "", options.reference, {{name, options.test, result}}}});
@@ -39,6 +39,7 @@ void run(const Options& options) {
   const measure::Comparison result = measure::compare(compare).front();
   progress.reset();
 
+  const auto region = options.mask == "effect" ? measure::Region::kEffect : measure::Region::kImage;
   if (!options.json.empty()) write_json_file(options.json, comparison_json(result, region));
   if (!options.html.empty()) write_html(options, result);
   if (!options.quiet) std::fputs(comparison_table(result, region).c_str(), stdout);

@@ -118,6 +118,10 @@ std::vector<Comparison> compare(const CompareOptions& options) {
   for (auto& test : meters) test.resize(layers.size());
 
   std::int64_t done = 0;
+  const auto report = [&] {
+    if (options.progress) options.progress(done, static_cast<std::int64_t>(frames.size()));
+  };
+  report();
   for (const JudgedFrame frame : frames) {
     const auto references = read_references(sequence, frame, layers, tracks);
     tbb::parallel_for(std::size_t{0}, options.tests.size(), [&](std::size_t t) {
@@ -126,7 +130,8 @@ std::vector<Comparison> compare(const CompareOptions& options) {
       for (std::size_t i = 0; i < layers.size(); ++i)
         meters[t][i].add(references[i], layer_of(planes, layers[i], file));
     });
-    if (options.progress) options.progress(++done, static_cast<std::int64_t>(frames.size()));
+    ++done;
+    report();
   }
 
   std::vector<Comparison> out;

@@ -17,7 +17,7 @@ struct CompareOptions {
   std::vector<std::string> layers;  ///< plane names; empty = all that references and results share
   bool flip = true;                 ///< FLIP takes most of the time
   std::int64_t first = 0, last = std::numeric_limits<std::int64_t>::max();  ///< frames judged
-  /// Called after each judged frame with the frames done and their total.
+  /// Called at the start and after each judged frame with the frames done and their total.
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
