@@ -11,6 +11,10 @@ const std::vector<BuiltinScene>& builtin_scenes() {
       {"fence", "static fence, moving light: a moving shadow", fence_scene},
       {"cylinder", "standing cylinder, light moving left", cylinder_scene},
       {"static", "nothing moves; shadows, glossy and indirect light", static_scene},
+      {"glossy-floor", "objects moving over lanes of four roughnesses", glossy_floor_scene},
+      {"occluder", "a post passing before a wall in coloured indirect light", occluder_scene},
+      {"room", "everything at once, camera moving", room_scene},
+      {"cut", "camera cut at 30, light on at 60, object appears at 90", cut_scene},
   };
   return scenes;
 }
@@ -30,6 +34,13 @@ Part box_part(const glm::dvec3& size_m, const glm::dvec3& centre, double turn_de
   part.size_m = size_m;
   part.placement.translation = centre;
   part.placement.rotation = glm::angleAxis(glm::radians(turn_deg), glm::dvec3(0, 1, 0));
+  return part;
+}
+
+Part quad_part(double x_m, double z_m) {
+  Part part;
+  part.shape = PartShape::kQuad;
+  part.size_m = {x_m, 0.0, z_m};
   return part;
 }
 
@@ -75,6 +86,22 @@ Object still_object(std::uint32_t id, std::string name, const Material& material
   object.material = material;
   object.parts = std::move(parts);
   return object;
+}
+
+Motion to_and_fro(const glm::dvec3& from, const glm::dvec3& to, double frames) {
+  Motion motion(Transform{.translation = from});
+  motion.keys.push_back({frames, Transform{.translation = to}, false});
+  motion.repeat = Repeat::kMirror;
+  return motion;
+}
+
+SceneLight rectangle_at(const glm::dvec3& eye, const glm::dvec3& target, double width_m,
+                        double height_m, const glm::dvec3& radiance) {
+  SceneLight out;
+  out.light = {.id = 0, .shape = LightShape::kRectangle, .width = width_m, .height = height_m};
+  out.emission = radiance;
+  out.motion = Motion(look_at(eye, target));
+  return out;
 }
 
 }  // namespace holdfast::scenes

@@ -25,9 +25,19 @@ Scene fence_scene();
 Scene cylinder_scene();
 /// A fence, a polished floor and coloured walls; nothing moves.
 Scene static_scene();
+/// A block and a ball move over lanes of four roughnesses.
+Scene glossy_floor_scene();
+/// A post passes in front of a wall that coloured walls light.
+Scene occluder_scene();
+/// Everything at once; camera, light and an object move.
+Scene room_scene();
+/// The room at rest, but: the camera cuts at frame 30, a second light is switched on at 60, an
+/// object appears at 90.
+Scene cut_scene();
 
 /// Shapes that built-in scenes are put together from.
 Part box_part(const glm::dvec3& size_m, const glm::dvec3& centre, double turn_deg = 0.0);
+Part quad_part(double x_m, double z_m);
 Part sphere_part(double radius_m, const glm::dvec3& centre);
 Part cylinder_part(double radius_m, double height_m, const glm::dvec3& centre);
 /// Vertical slats of 0.58 of the pitch, two rails and a post at each end, centred in x.
@@ -35,5 +45,10 @@ std::vector<Part> fence_parts(int slats, double pitch_m, double height_m);
 /// One object at rest.
 Object still_object(std::uint32_t id, std::string name, const Material& material,
                     std::vector<Part> parts);
+/// A one-way trip of `frames` frames along a line, and back again, for ever.
+Motion to_and_fro(const glm::dvec3& from, const glm::dvec3& to, double frames);
+/// A rectangle light at rest, id 0, that faces `target`.
+SceneLight rectangle_at(const glm::dvec3& eye, const glm::dvec3& target, double width_m,
+                        double height_m, const glm::dvec3& radiance);
 
 }  // namespace holdfast::scenes

@@ -11,11 +11,8 @@ Scene cylinder_scene() {
   scene.camera.vertical_fov_deg = 34.0;
   scene.camera.motion = Motion(look_at({0.0, 2.3, 4.9}, {0.0, 0.42, 0.9}));
 
-  Part plane;
-  plane.shape = PartShape::kQuad;
-  plane.size_m = {40.0, 0.0, 40.0};
   const Material floor{.albedo = {0.58, 0.60, 0.56}, .checker = Checker{{0.48, 0.51, 0.48}, 0.6}};
-  scene.objects = {still_object(1, "plane", floor, {plane}),
+  scene.objects = {still_object(1, "plane", floor, {quad_part(40.0, 40.0)}),
                    still_object(2, "cylinder", {.albedo = {0.75, 0.30, 0.16}},
                                 {cylinder_part(0.5, 1.5, {0.0, 0.75, 0.0})})};
 
@@ -26,8 +23,7 @@ Scene cylinder_scene() {
   light.motion.keys.clear();
   light.motion.repeat = Repeat::kMirror;
   for (int i = 0; i <= 13; ++i)  // to the left, 4 cm a frame
-    light.motion.keys.push_back(
-        {10.0 * i, look_at({2.6 - 0.4 * i, 3.3, -2.8}, target), false});
+    light.motion.keys.push_back({10.0 * i, look_at({2.6 - 0.4 * i, 3.3, -2.8}, target), false});
   scene.lights = {light};
   return scene;
 }

@@ -15,8 +15,7 @@ Motion swinging_arc() {
   motion.keys.clear();
   motion.repeat = Repeat::kLoop;
   for (int i = 0; i <= kKeys; ++i) {
-    const double phi =
-        -kSwingRad * std::cos(2.0 * std::numbers::pi * (i + 6.0) / kKeys);
+    const double phi = -kSwingRad * std::cos(2.0 * std::numbers::pi * (i + 6.0) / kKeys);
     const glm::dvec3 eye(kRadius_m * std::sin(phi), kHeight_m, -kRadius_m * std::cos(phi));
     motion.keys.push_back({kPeriodFrames * i / kKeys, look_at(eye, {0.0, 0.3, 0.8}), false});
   }
@@ -42,12 +41,9 @@ Scene fence_scene() {
   scene.camera.vertical_fov_deg = 36.0;
   scene.camera.motion = Motion(look_at({0.8, 2.2, 4.8}, {0.02, 0.26, 0.9}));
 
-  Part ground;
-  ground.shape = PartShape::kQuad;
-  ground.size_m = {40.0, 0.0, 40.0};
   const Material tiles{.albedo = {0.62, 0.55, 0.44}, .checker = Checker{{0.52, 0.45, 0.36}, 0.5}};
   scene.objects = {
-      still_object(1, "ground", tiles, {ground}),
+      still_object(1, "ground", tiles, {quad_part(40.0, 40.0)}),
       still_object(2, "fence", {.albedo = {0.72, 0.36, 0.20}}, fence_parts(11, 0.36, 1.05)),
       still_object(3, "stones", {.albedo = {0.45, 0.50, 0.52}}, stones()),
       still_object(4, "ball", {.albedo = {0.20, 0.48, 0.52}},

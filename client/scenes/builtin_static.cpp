@@ -9,19 +9,16 @@ Scene static_scene() {
   scene.camera.vertical_fov_deg = 36.0;
   scene.camera.motion = Motion(look_at({0.8, 2.15, 5.0}, {0.0, 0.33, 0.85}));
 
-  Part ground;
-  ground.shape = PartShape::kQuad;
-  ground.size_m = {40.0, 0.0, 40.0};
   const Material floor{.albedo = {0.50, 0.46, 0.40},
                        .checker = Checker{{0.36, 0.33, 0.30}, 0.5},
                        .roughness = 0.35,
                        .specular = glm::dvec3(0.05)};
-  const Material paint{.albedo = {0.16, 0.34, 0.62}, .roughness = 0.3,
-                       .specular = glm::dvec3(0.04)};
-  const Material copper{.albedo = glm::dvec3(0.02), .roughness = 0.25,
-                        .specular = {0.95, 0.64, 0.54}};
+  const Material paint{
+      .albedo = {0.16, 0.34, 0.62}, .roughness = 0.3, .specular = glm::dvec3(0.04)};
+  const Material copper{
+      .albedo = glm::dvec3(0.02), .roughness = 0.25, .specular = {0.95, 0.64, 0.54}};
   scene.objects = {
-      still_object(1, "ground", floor, {ground}),
+      still_object(1, "ground", floor, {quad_part(40.0, 40.0)}),
       still_object(2, "fence", {.albedo = {0.72, 0.36, 0.20}}, fence_parts(11, 0.36, 1.05)),
       still_object(3, "red wall", {.albedo = {0.75, 0.12, 0.08}},
                    {box_part({0.12, 1.6, 3.0}, {-2.45, 0.8, 1.6})}),

@@ -10,7 +10,7 @@
 namespace holdfast::scenes {
 namespace {
 
-constexpr double kSmallestAlpha = 1e-4;  // GGX alpha, below it a mirror in double precision
+constexpr double kSmallestAlpha = 1e-4;  // GGX alpha; rays of smoother surfaces are a mirror's
 
 double alpha_of(double roughness) {
   return std::max(kSmallestAlpha, ggx_alpha_from_roughness(roughness));
@@ -61,8 +61,8 @@ glm::dvec3 specular_factor(const Surface& surface) {
   if (!surface.has_lobe()) return glm::dvec3(0.0);
   const double r = surface.roughness;
   const double nv = std::clamp(glm::dot(surface.normal, surface.to_viewer), 0.0, 1.0);
-  const glm::dvec4 k = r * glm::dvec4(-1.0, -0.0275, -0.572, 0.022) +
-                       glm::dvec4(1.0, 0.0425, 1.04, -0.04);
+  const glm::dvec4 k =
+      r * glm::dvec4(-1.0, -0.0275, -0.572, 0.022) + glm::dvec4(1.0, 0.0425, 1.04, -0.04);
   const double a004 = std::min(k.x * k.x, std::exp2(-9.28 * nv)) * k.x + k.y;
   return glm::max(glm::dvec3(1e-4), surface.specular * (-1.04 * a004 + k.z) + (1.04 * a004 + k.w));
 }
@@ -74,7 +74,9 @@ LobeSample sample_lobe(const Surface& surface, const glm::dvec2& u) {
   const glm::dmat3 world_from_tangent = frame_around(surface.normal);
   glm::dvec3 v = glm::transpose(world_from_tangent) * surface.to_viewer;
   v.z = std::max(v.z, 1e-6);
-  const glm::dvec3 h = sample_visible_normal(glm::normalize(v), alpha, u);
+  const bool mirror = alpha <= kSmallestAlpha;
+  const glm::dvec3 h =
+      mirror ? glm::dvec3(0, 0, 1) : sample_visible_normal(glm::normalize(v), alpha, u);
   const glm::dvec3 l = glm::reflect(-v, h);
   const glm::dvec3 direction = glm::normalize(world_from_tangent * l);
   if (l.z <= 1e-9 || glm::dot(direction, surface.geometric_normal) <= 0.0) return out;

@@ -28,9 +28,9 @@ class LightBatcher {
   const LightState& light_;
   const Surface& surface_;
   const LightTarget& target_;
-  glm::vec3 first_{0.0f};                ///< from the surface's ray origin to sample (0, 0)
+  glm::vec3 first_{0.0f};  ///< from the surface's ray origin to sample (0, 0)
   glm::vec3 along_u_{0.0f}, along_v_{0.0f};
-  glm::vec3 origin_shift_{0.0f};         ///< from the surface's position to its ray origin
+  glm::vec3 origin_shift_{0.0f};  ///< from the surface's position to its ray origin
   glm::vec3 normal_{0.0f};
 };
 

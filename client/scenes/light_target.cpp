@@ -88,7 +88,8 @@ double LightTarget::density(const LightSample& sample, glm::dvec3* colour) const
   if (lobe_)
     lobe = evaluate_lobe(surface_, sample.direction,
                          std::max(surface_.roughness, kLeastDirectRoughness));
-  if (colour) *colour += flow * (light_.light.shape == LightShape::kRectangle ? lobe : diffuse + lobe);
+  if (colour)
+    *colour += flow * (light_.light.shape == LightShape::kRectangle ? lobe : diffuse + lobe);
   return luminance(flow * (diffuse + lobe));
 }
 
@@ -98,8 +99,7 @@ bool LightTarget::use_proven_bound() {
   for (double x : {-1.0, 1.0})
     for (double y : {-1.0, 1.0})
       highest = std::max(highest, glm::dot(surface_.normal, corner(light_, x, y, p)));
-  const double height =
-      glm::dot(glm::dvec3(light_.world_from_light[2]), corner(light_, 0, 0, p));
+  const double height = glm::dot(glm::dvec3(light_.world_from_light[2]), corner(light_, 0, 0, p));
   const double distance2 = distance2_to_rectangle(light_, p);
   const double area = light_.light.width * light_.light.height;
   const double bound = luminance(light_.emission * surface_.albedo) * std::numbers::inv_pi *

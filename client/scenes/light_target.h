@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+
 #include <glm/glm.hpp>
 
 #include "client/scenes/light_state.h"
@@ -60,8 +61,8 @@ class LightTarget {
   const Surface& surface_;
   bool lobe_;
   int side_ = 1;
-  double total_ = 0.0;                        // sum of all bounds
-  std::array<double, kGrid * kGrid> bound_;   // by cell; the first side_^2 are set
+  double total_ = 0.0;                       // sum of all bounds
+  std::array<double, kGrid * kGrid> bound_;  // by cell; the first side_^2 are set
   glm::dvec3 unshadowed_{0.0};
 };
 

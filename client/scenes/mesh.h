@@ -1,8 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "client/scenes/scene.h"
 

@@ -29,8 +29,7 @@ glm::dmat4 Transform::matrix() const {
 
 Transform look_at(const glm::dvec3& eye, const glm::dvec3& target) {
   const glm::dvec3 forward = glm::normalize(target - eye);
-  const glm::dvec3 up =
-      std::abs(forward.y) > 0.9999 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 up = std::abs(forward.y) > 0.9999 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   Transform out;
   out.translation = eye;
   out.rotation = glm::normalize(glm::quatLookAt(forward, up));

@@ -1,9 +1,9 @@
 #include "client/scenes/noisy_frame.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
+
+#include <tbb/parallel_for.h>
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
@@ -130,8 +130,8 @@ class NoisyFrame {
     for (int i = 0; i < spp_; ++i) {
       const LobeSample lobe = sample_lobe(surface, rng.next2());
       if (lobe.direction == glm::dvec3(0.0)) continue;
-      const Incident incident = trace_path(view_.scene, view_.world, view_.lights, surface.origin,
-                                           lobe.direction, rng);
+      const Incident incident =
+          trace_path(view_.scene, view_.world, view_.lights, surface.origin, lobe.direction, rng);
       sum += lobe.weight * incident.radiance;
       if (i > 0) continue;
       glossy_direction_.set(x, y, lobe.direction);

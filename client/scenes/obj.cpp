@@ -60,7 +60,8 @@ class ObjReader {
   std::uint32_t read_vertex(const std::string& word) {
     const auto first = word.find('/');
     const auto last = word.rfind('/');
-    const std::size_t position = resolve(std::string_view(word).substr(0, first), positions_.size());
+    const std::size_t position =
+        resolve(std::string_view(word).substr(0, first), positions_.size());
     glm::vec3 normal(0.0f);
     std::size_t normal_key = 0;
     if (first != word.npos && last != first) {
@@ -95,6 +96,8 @@ class ObjReader {
 
 }  // namespace
 
-Mesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
+Mesh read_obj(const std::filesystem::path& file) {
+  return ObjReader(file).read();
+}
 
 }  // namespace holdfast::scenes

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+
 #include <glm/glm.hpp>
 
 #include "core/frame/plane.h"

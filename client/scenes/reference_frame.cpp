@@ -16,8 +16,10 @@ namespace {
 enum Stream : std::uint64_t { kGlossyStream = 1ull << 32, kIndirectStream };
 
 Rng rng_of(const View& view, int x, int y, std::uint64_t stream) {
-  return {view.seed, 0, static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.width) +
-                            static_cast<std::uint64_t>(x), stream};
+  return {view.seed, 0,
+          static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.width) +
+              static_cast<std::uint64_t>(x),
+          stream};
 }
 
 glm::dvec3 reference_glossy(const View& view, const Surface& surface, int side, Rng rng) {
@@ -26,9 +28,9 @@ glm::dvec3 reference_glossy(const View& view, const Surface& surface, int side, 
   for (int i = 0; i < side * side; ++i) {
     const LobeSample lobe = sample_lobe(surface, stratified(i, side, rng.next2()));
     if (lobe.direction == glm::dvec3(0.0)) continue;
-    sum += lobe.weight * trace_path(view.scene, view.world, view.lights, surface.origin,
-                                    lobe.direction, rng)
-                             .radiance;
+    sum += lobe.weight *
+           trace_path(view.scene, view.world, view.lights, surface.origin, lobe.direction, rng)
+               .radiance;
   }
   return sum / static_cast<double>(side * side);
 }
@@ -36,8 +38,7 @@ glm::dvec3 reference_glossy(const View& view, const Surface& surface, int side, 
 glm::dvec3 reference_indirect(const View& view, const Surface& surface, int side, Rng rng) {
   glm::dvec3 sum(0.0);
   for (int i = 0; i < side * side; ++i) {
-    const glm::dvec3 direction =
-        sample_cosine(surface.normal, stratified(i, side, rng.next2()));
+    const glm::dvec3 direction = sample_cosine(surface.normal, stratified(i, side, rng.next2()));
     sum += trace_path(view.scene, view.world, view.lights, surface.origin, direction, rng).radiance;
   }
   return sum / static_cast<double>(side * side);

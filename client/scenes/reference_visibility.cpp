@@ -1,8 +1,8 @@
 #include "client/scenes/reference_visibility.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include <tbb/parallel_for.h>
 
 #include "client/scenes/light_batch.h"
 #include "client/scenes/light_target.h"
@@ -16,7 +16,8 @@ constexpr int kProbeSide = 4;    // 16 samples tell whether a pixel may lie in a
 constexpr int kProbeRadius = 2;  // pixels around that must agree
 constexpr std::uint64_t kFirstStream = 1ull << 33;
 
-/// The share, by weight, of side^2 stratified light samples that nothing blocks. `side` is a multiple of 4.
+/// The share, by weight, of side^2 stratified light samples that nothing blocks. `side` is a
+/// multiple of 4.
 double visible_share(const View& view, const LightState& light, const Surface& surface, int side,
                      Rng rng) {
   const LightTarget target(light, surface);
@@ -66,7 +67,8 @@ void render_row(const View& view, std::size_t light, int side, int y, ChannelVie
 bool is_settled(ChannelView<const float> probe, int x, int y) {
   const float here = probe.at(x, y);
   if (here != 0.0f && here != 1.0f) return false;
-  for (int j = std::max(0, y - kProbeRadius); j <= std::min(probe.height - 1, y + kProbeRadius); ++j)
+  for (int j = std::max(0, y - kProbeRadius); j <= std::min(probe.height - 1, y + kProbeRadius);
+       ++j)
     for (int i = std::max(0, x - kProbeRadius); i <= std::min(probe.width - 1, x + kProbeRadius);
          ++i)
       if (probe.at(i, j) != here) return false;

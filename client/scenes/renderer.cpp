@@ -30,14 +30,15 @@ Scene checked(Scene scene, const RenderSettings& settings) {
   ids.clear();
   for (const SceneLight& light : scene.lights)
     if (!ids.insert(light.light.id).second)
-      throw InputError("light " + std::to_string(light.light.id), "must be listed once", "repeated");
+      throw InputError("light " + std::to_string(light.light.id), "must be listed once",
+                       "repeated");
   return scene;
 }
 
 /// Adds what moved or appeared between two times; everything there is if `all`.
 template <class Item>
-void fill_table(TransformTable& table, std::uint32_t id, const Item& item, double before, double now,
-                bool all) {
+void fill_table(TransformTable& table, std::uint32_t id, const Item& item, double before,
+                double now, bool all) {
   if (now < item.from_frame) return;
   const glm::dmat4 matrix = item.motion.at(now).matrix();
   if (all || before < item.from_frame || matrix != item.motion.at(before).matrix())
@@ -86,8 +87,8 @@ Frame Renderer::frame(std::int64_t index) {
   for (const SceneLight& light : scene_.lights)
     fill_table(frame.lights, light.light.id, light, before, now, is_first);
   world_.set_time(now);
-  const View view{scene_, world_,        lights_at(scene_, now), frame.camera, settings_.width,
-                  settings_.height, settings_.seed, index};
+  const View view{scene_,          world_,           lights_at(scene_, now), frame.camera,
+                  settings_.width, settings_.height, settings_.seed,         index};
   frame.planes = render_noisy(view, settings_.spp);
   return frame;
 }

@@ -24,8 +24,8 @@ struct RenderSettings {
 /// they do not depend on the number of threads or on what was rendered before.
 class Renderer {
  public:
-  /// Throws InputError for settings out of range, a scene without camera keys or with an id twice or
-  /// 0, and meshes that cannot be read.
+  /// Throws InputError for settings out of range, a scene without camera keys or with an id twice
+  /// or 0, and meshes that cannot be read.
   Renderer(Scene scene, const RenderSettings& settings);
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+
 #include <glm/glm.hpp>
 
 namespace holdfast::scenes {
@@ -17,8 +18,8 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
 class Rng {
  public:
   Rng(std::uint64_t seed, std::uint64_t frame, std::uint64_t pixel, std::uint64_t stream)
-      : state_(mix_bits(seed + kStep * mix_bits(frame + kStep * mix_bits(pixel + kStep * stream)))) {
-  }
+      : state_(
+            mix_bits(seed + kStep * mix_bits(frame + kStep * mix_bits(pixel + kStep * stream)))) {}
 
   /// Uniform in [0, 1).
   double next() {

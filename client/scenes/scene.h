@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "client/scenes/motion.h"
 #include "core/frame/light.h"
@@ -36,7 +37,7 @@ enum class PartShape : std::uint8_t { kBox, kSphere, kCylinder, kQuad, kMesh };
 /// One shape of an object, centred on the object's origin before `placement`.
 struct Part {
   PartShape shape = PartShape::kBox;
-  glm::dvec3 size_m{1.0};      ///< box: edges; quad: x and z, its normal is +Y
+  glm::dvec3 size_m{1.0};      ///< box: edges; quad: x and z, its normal is +Y, y is unused
   double radius_m = 0.5;       ///< sphere, cylinder
   double height_m = 1.0;       ///< cylinder, along Y
   std::filesystem::path file;  ///< mesh: a Wavefront OBJ file

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+
 #include <nlohmann/json.hpp>
 
 #include "client/scenes/scene_json.h"
@@ -64,13 +65,14 @@ glm::dvec3 colour_or(StrictObject& in, const std::string& key, const glm::dvec3&
                      double high) {
   const Json* value = in.optional(key);
   if (!value) return fallback;
-  const glm::dvec3 colour = value->is_number() ? glm::dvec3(value->get<double>())
-                                               : vector_of<3>(in, key, *value);
+  const glm::dvec3 colour =
+      value->is_number() ? glm::dvec3(value->get<double>()) : vector_of<3>(in, key, *value);
   for (int c = 0; c < 3; ++c)
     if (!(colour[c] >= 0.0 && colour[c] <= high))
-      throw InputError(in.subject(key),
-                       high == kInf ? "must not be negative" : "must lie in 0.." + std::to_string(high),
-                       json_excerpt(*value));
+      throw InputError(
+          in.subject(key),
+          high == kInf ? "must not be negative" : "must lie in 0.." + std::to_string(high),
+          json_excerpt(*value));
   return colour;
 }
 
@@ -81,8 +83,7 @@ StrictObject child(StrictObject& in, const std::string& key) {
 /// Calls `read` with each element of an array of objects.
 template <class Read>
 void each(StrictObject& in, const std::string& key, const Json& array, const Read& read) {
-  if (!array.is_array())
-    throw InputError(in.subject(key), "must be an array", json_excerpt(array));
+  if (!array.is_array()) throw InputError(in.subject(key), "must be an array", json_excerpt(array));
   for (std::size_t i = 0; i < array.size(); ++i) {
     StrictObject item(array[i], in.file(), in.path(key) + "[" + std::to_string(i) + "]");
     read(item);
@@ -101,7 +102,8 @@ Transform read_transform(StrictObject& in) {
   }
   if (const Json* value = in.optional("lookAt")) {
     if (in.json().contains("rotation"))
-      throw InputError(in.subject("lookAt"), "must not stand beside rotation", json_excerpt(*value));
+      throw InputError(in.subject("lookAt"), "must not stand beside rotation",
+                       json_excerpt(*value));
     const glm::dvec3 target = vector_of<3>(in, "lookAt", *value);
     if (target == out.translation)
       throw InputError(in.subject("lookAt"), "must differ from translation", json_excerpt(*value));
@@ -170,7 +172,7 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else if (shape == "quad") {
     part.shape = PartShape::kQuad;
     const glm::dvec2 size = vector_or<2>(in, "size", glm::dvec2(1.0));
-    part.size_m = {size.x, 1.0, size.y};
+    part.size_m = {size.x, 0.0, size.y};
   } else if (shape == "sphere") {
     part.shape = PartShape::kSphere;
     part.radius_m = positive_or(in, "radius", part.radius_m);
@@ -184,8 +186,10 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
   } else {
     throw InputError(in.subject("shape"), "must be box, quad, sphere, cylinder or mesh", shape);
   }
-  if (!(part.size_m.x > 0.0 && part.size_m.y > 0.0 && part.size_m.z > 0.0))
-    throw InputError(in.subject("size"), "must be greater than 0", json_excerpt(in.required("size")));
+  const double thickness = part.shape == PartShape::kQuad ? 1.0 : part.size_m.y;
+  if (!(part.size_m.x > 0.0 && thickness > 0.0 && part.size_m.z > 0.0))
+    throw InputError(in.subject("size"), "must be greater than 0",
+                     json_excerpt(in.required("size")));
   part.placement = read_transform(in);
   return part;
 }
@@ -234,7 +238,8 @@ SceneLight read_light(StrictObject& in) {
   out.light.width = number_or(in, "width", 0.0, 0.0);
   out.light.height = number_or(in, "height", 0.0, 0.0);
   out.light.radius = number_or(in, "radius", 0.0, 0.0);
-  const bool flat = *shape == LightShape::kRectangle && !(out.light.width > 0 && out.light.height > 0);
+  const bool flat =
+      *shape == LightShape::kRectangle && !(out.light.width > 0 && out.light.height > 0);
   const bool round = *shape == LightShape::kDisk || *shape == LightShape::kSphere;
   if (flat) throw InputError(in.subject("width"), "and height must be greater than 0", "0");
   if (round && !(out.light.radius > 0))

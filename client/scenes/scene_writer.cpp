@@ -7,7 +7,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json vector_json(const glm::dvec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
 
 void put_transform(Json& out, const Transform& t) {
   const Transform identity;
@@ -19,9 +21,12 @@ void put_transform(Json& out, const Transform& t) {
 
 const char* repeat_name(Repeat repeat) {
   switch (repeat) {
-    case Repeat::kHold: return "hold";
-    case Repeat::kLoop: return "loop";
-    case Repeat::kMirror: return "mirror";
+    case Repeat::kHold:
+      return "hold";
+    case Repeat::kLoop:
+      return "loop";
+    case Repeat::kMirror:
+      return "mirror";
   }
   return "";
 }
@@ -44,15 +49,21 @@ Json motion_json(const Motion& motion) {
 Json part_json(const Part& part) {
   Json out;
   switch (part.shape) {
-    case PartShape::kBox: out = {{"shape", "box"}, {"size", vector_json(part.size_m)}}; break;
+    case PartShape::kBox:
+      out = {{"shape", "box"}, {"size", vector_json(part.size_m)}};
+      break;
     case PartShape::kQuad:
       out = {{"shape", "quad"}, {"size", Json::array({part.size_m.x, part.size_m.z})}};
       break;
-    case PartShape::kSphere: out = {{"shape", "sphere"}, {"radius", part.radius_m}}; break;
+    case PartShape::kSphere:
+      out = {{"shape", "sphere"}, {"radius", part.radius_m}};
+      break;
     case PartShape::kCylinder:
       out = {{"shape", "cylinder"}, {"radius", part.radius_m}, {"height", part.height_m}};
       break;
-    case PartShape::kMesh: out = {{"shape", "mesh"}, {"file", part.file.string()}}; break;
+    case PartShape::kMesh:
+      out = {{"shape", "mesh"}, {"file", part.file.string()}};
+      break;
   }
   put_transform(out, part.placement);
   return out;
@@ -70,22 +81,22 @@ Json material_json(const Material& material) {
 }
 
 Json object_json(const Object& object) {
-  Json out{{"id", object.id}, {"name", object.name}, {"fromFrame", object.from_frame},
-           {"material", material_json(object.material)}, {"parts", Json::array()}};
+  Json out{{"id", object.id},
+           {"name", object.name},
+           {"fromFrame", object.from_frame},
+           {"material", material_json(object.material)},
+           {"parts", Json::array()}};
   for (const Part& part : object.parts) out["parts"].push_back(part_json(part));
   out["motion"] = motion_json(object.motion);
   return out;
 }
 
 Json light_json(const SceneLight& light) {
-  return {{"id", light.light.id},
-          {"shape", std::string(light_shape_name(light.light.shape))},
-          {"width", light.light.width},
-          {"height", light.light.height},
-          {"radius", light.light.radius},
-          {"emission", vector_json(light.emission)},
-          {"fromFrame", light.from_frame},
-          {"motion", motion_json(light.motion)}};
+  return {
+      {"id", light.light.id},          {"shape", std::string(light_shape_name(light.light.shape))},
+      {"width", light.light.width},    {"height", light.light.height},
+      {"radius", light.light.radius},  {"emission", vector_json(light.emission)},
+      {"fromFrame", light.from_frame}, {"motion", motion_json(light.motion)}};
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <optional>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "client/scenes/light_state.h"
 #include "client/scenes/scene.h"

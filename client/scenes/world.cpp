@@ -1,12 +1,12 @@
 #include "client/scenes/world.h"
 
-#include <embree3/rtcore.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 namespace holdfast::scenes {
 namespace {
@@ -24,22 +24,15 @@ float ray_end(double max_m) {
   return static_cast<float>(std::min(max_m, 1e30));
 }
 
-RayScene make_mesh_scene(RTCDevice device, const Mesh& mesh) {
-  RayScene scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+/// A geometry with the mesh's triangles and room for its vertices.
+RTCGeometry make_geometry(RTCDevice device, const Mesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                            sizeof(glm::vec3), mesh.positions.size());
-  std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<glm::vec3*>(positions));
+  rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                          mesh.positions.size());
   void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                             sizeof(glm::uvec3), mesh.triangles.size());
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(triangles));
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene.get(), geometry, 0);
-  rtcReleaseGeometry(geometry);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(scene.get());
-  return scene;
+  return geometry;
 }
 
 void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction, double max_m) {
@@ -53,62 +46,76 @@ void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction,
 
 }  // namespace
 
+// Triangles are kept in world space in one tree: for scenes of this size a rebuild when something
+// moves costs less than instances do for each ray.
 struct World::State {
   struct Instance {
     Mesh mesh;
-    RayScene scene;
-    RTCGeometry geometry = nullptr;
-    glm::dmat4 world_from_object{1.0};
-    glm::dmat3 normal_from_object{1.0};
+    RTCGeometry geometry = nullptr;  // kept by the scene
+    bool is_present = false;
+    glm::dmat4 world_from_object{0.0};
+    glm::dmat3 normal_from_object{0.0};
   };
 
   explicit State(const Scene& s) : description(s), device(rtcNewDevice(nullptr)) {
     if (!device) throw std::runtime_error("Embree could not be started");
-    top.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(top.get(), RTC_SCENE_FLAG_ROBUST);
+    tree.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);
     for (std::size_t i = 0; i < s.objects.size(); ++i) {
       Instance& instance = instances.emplace_back();
       instance.mesh = mesh_of_object(s.objects[i]);
-      instance.scene = make_mesh_scene(device.get(), instance.mesh);
-      instance.geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-      rtcSetGeometryInstancedScene(instance.geometry, instance.scene.get());
-      rtcAttachGeometryByID(top.get(), instance.geometry, static_cast<unsigned>(i));
-      rtcReleaseGeometry(instance.geometry);  // the scene keeps it
+      instance.geometry = make_geometry(device.get(), instance.mesh);
+      rtcAttachGeometryByID(tree.get(), instance.geometry, static_cast<unsigned>(i));
+      rtcReleaseGeometry(instance.geometry);
     }
+    move_to(0.0);
+  }
+
+  void move_to(double frame) {
+    bool has_changed = false;
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+      const Object& object = description.objects[i];
+      has_changed |=
+          place(instances[i], object.motion.at(frame).matrix(), frame >= object.from_frame);
+    }
+    if (has_changed) rtcCommitScene(tree.get());
+  }
+
+  /// False if it was like this already.
+  static bool place(Instance& instance, const glm::dmat4& world_from_object, bool is_present) {
+    const bool has_moved = world_from_object != instance.world_from_object;
+    if (!has_moved && is_present == instance.is_present) return false;
+    instance.is_present = is_present;
+    instance.world_from_object = world_from_object;
+    instance.normal_from_object = glm::transpose(glm::inverse(glm::dmat3(world_from_object)));
+    auto* positions = static_cast<glm::vec3*>(
+        rtcGetGeometryBufferData(instance.geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    for (const glm::vec3& p : instance.mesh.positions)
+      *positions++ = glm::vec3(world_from_object * glm::dvec4(p, 1.0));
+    rtcUpdateGeometryBuffer(instance.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+    if (is_present)
+      rtcEnableGeometry(instance.geometry);
+    else
+      rtcDisableGeometry(instance.geometry);
+    rtcCommitGeometry(instance.geometry);
+    return true;
   }
 
   const Scene& description;
   Device device;
-  RayScene top;
+  RayScene tree;
   std::vector<Instance> instances;
 };
 
+// One thread builds, so that the tree never depends on the number of threads.
 World::World(const Scene& scene) {
-  // One thread builds, so that the tree never depends on the number of threads.
   tbb::task_arena(1).execute([&] { state_ = std::make_unique<State>(scene); });
-  set_time(0.0);
 }
 
 World::~World() = default;
 
 void World::set_time(double frame) {
-  tbb::task_arena(1).execute([&] {
-    for (std::size_t i = 0; i < state_->instances.size(); ++i) {
-      State::Instance& instance = state_->instances[i];
-      const Object& object = state_->description.objects[i];
-      instance.world_from_object = object.motion.at(frame).matrix();
-      instance.normal_from_object =
-          glm::transpose(glm::inverse(glm::dmat3(instance.world_from_object)));
-      const glm::mat4 m(instance.world_from_object);
-      rtcSetGeometryTransform(instance.geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &m[0][0]);
-      if (frame >= object.from_frame)
-        rtcEnableGeometry(instance.geometry);
-      else
-        rtcDisableGeometry(instance.geometry);
-      rtcCommitGeometry(instance.geometry);
-    }
-    rtcCommitScene(state_->top.get());
-  });
+  tbb::task_arena(1).execute([&] { state_->move_to(frame); });
 }
 
 std::optional<Hit> World::nearest(const glm::dvec3& origin, const glm::dvec3& direction,
@@ -116,14 +123,13 @@ std::optional<Hit> World::nearest(const glm::dvec3& origin, const glm::dvec3& di
   RTCRayHit query;
   set_ray(query.ray, origin, direction, max_m);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(state_->top.get(), &context, &query);
+  rtcIntersect1(state_->tree.get(), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
 
   Hit hit;
-  hit.object = query.hit.instID[0];
+  hit.object = query.hit.geomID;
   const State::Instance& instance = state_->instances[hit.object];
   const glm::uvec3 t = instance.mesh.triangles[query.hit.primID];
   const glm::dvec3 a(instance.mesh.positions[t.x]), b(instance.mesh.positions[t.y]),
@@ -152,7 +158,7 @@ bool World::occluded(const glm::dvec3& origin, const glm::dvec3& direction, doub
   set_ray(ray, origin, direction, max_m);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(state_->top.get(), &context, &ray);
+  rtcOccluded1(state_->tree.get(), &context, &ray);
   return ray.tfar < 0.0f;
 }
 
@@ -174,14 +180,16 @@ unsigned World::occluded(const glm::dvec3& origin, const RayBatch& rays) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded8(kAllValid, state_->top.get(), &context, &query);
+  rtcOccluded8(kAllValid, state_->tree.get(), &context, &query);
   unsigned blocked = 0;
   for (unsigned i = 0; i < 8; ++i)
     if (query.tfar[i] < 0.0f) blocked |= 1u << i;
   return blocked;
 }
 
-const Mesh& World::mesh(std::size_t object) const { return state_->instances[object].mesh; }
+const Mesh& World::mesh(std::size_t object) const {
+  return state_->instances[object].mesh;
+}
 
 const glm::dmat4& World::world_from_object(std::size_t object) const {
   return state_->instances[object].world_from_object;

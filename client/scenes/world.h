@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "client/scenes/mesh.h"
 #include "client/scenes/ray_batch.h"
@@ -15,19 +16,19 @@ namespace holdfast::scenes {
 /// Where a ray meets an object. World space.
 struct Hit {
   double distance_m = 0.0;
-  std::size_t object = 0;             ///< index in Scene::objects
-  glm::dvec3 position{0.0};           ///< on the triangle
-  glm::dvec3 normal{0.0};             ///< interpolated, unit, faces the ray's origin
-  glm::dvec3 geometric_normal{0.0};   ///< of the triangle, unit, faces the ray's origin
-  glm::dvec3 object_position{0.0};    ///< object space
-  glm::dvec3 object_normal{0.0};      ///< object space, of the triangle
+  std::size_t object = 0;            ///< index in Scene::objects
+  glm::dvec3 position{0.0};          ///< on the triangle
+  glm::dvec3 normal{0.0};            ///< interpolated, unit, faces the ray's origin
+  glm::dvec3 geometric_normal{0.0};  ///< of the triangle, unit, faces the ray's origin
+  glm::dvec3 object_position{0.0};   ///< object space
+  glm::dvec3 object_normal{0.0};     ///< object space, of the triangle
 };
 
 /// The objects of a scene at one time, ready for ray queries. Queries may run in parallel;
 /// `set_time` may not run beside them.
 class World {
  public:
-  /// Builds all meshes. `scene` must outlive the world. Throws InputError as `read_obj`.
+  /// Builds all meshes, at time 0. `scene` must outlive the world. Throws InputError as `read_obj`.
   explicit World(const Scene& scene);
   ~World();
 
