@@ -43,15 +43,17 @@ std::size_t plane_bytes(const Plane& plane) {
 }
 
 void read_plane_bytes(const Plane& plane, std::size_t offset, std::size_t bytes, void* out) {
-  for_each_run(plane, offset, bytes, [&](int c, int y, std::size_t x, std::size_t n, std::size_t at) {
-    std::memcpy(static_cast<std::byte*>(out) + at * 4, plane.words(c).row(y) + x, n * 4);
-  });
+  for_each_run(
+      plane, offset, bytes, [&](int c, int y, std::size_t x, std::size_t n, std::size_t at) {
+        std::memcpy(static_cast<std::byte*>(out) + at * 4, plane.words(c).row(y) + x, n * 4);
+      });
 }
 
 void write_plane_bytes(Plane& plane, std::size_t offset, std::size_t bytes, const void* in) {
-  for_each_run(plane, offset, bytes, [&](int c, int y, std::size_t x, std::size_t n, std::size_t at) {
-    std::memcpy(plane.words(c).row(y) + x, static_cast<const std::byte*>(in) + at * 4, n * 4);
-  });
+  for_each_run(
+      plane, offset, bytes, [&](int c, int y, std::size_t x, std::size_t n, std::size_t at) {
+        std::memcpy(plane.words(c).row(y) + x, static_cast<const std::byte*>(in) + at * 4, n * 4);
+      });
 }
 
 }  // namespace holdfast::wire

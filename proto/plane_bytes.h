@@ -29,8 +29,8 @@ std::size_t plane_bytes(PlaneId id, PlaneSize size);
 /// Bytes of `plane`.
 std::size_t plane_bytes(const Plane& plane);
 
-/// Copies `bytes` bytes at `offset` of the plane's wire layout to `out`. Both are multiples of 4 and
-/// lie within the plane (asserted).
+/// Copies `bytes` bytes at `offset` of the plane's wire layout to `out`. Both are multiples of 4
+/// and lie within the plane (asserted).
 void read_plane_bytes(const Plane& plane, std::size_t offset, std::size_t bytes, void* out);
 /// The inverse: copies from `in` to the plane.
 void write_plane_bytes(Plane& plane, std::size_t offset, std::size_t bytes, const void* in);

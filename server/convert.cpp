@@ -17,7 +17,9 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string quoted(const std::string& text) { return "\"" + text.substr(0, 64) + "\""; }
+std::string quoted(const std::string& text) {
+  return "\"" + text.substr(0, 64) + "\"";
+}
 
 /// `name` if it is one of `names`, `fallback` if it is empty.
 std::string checked_name(const char* subject, const std::string& name,
@@ -37,13 +39,19 @@ int checked_dimension(const char* subject, std::uint32_t value) {
 
 LightShape shape_from(const v1::Light& light) {
   switch (light.shape()) {
-    case v1::LIGHT_SHAPE_RECTANGLE: return LightShape::kRectangle;
-    case v1::LIGHT_SHAPE_DISK: return LightShape::kDisk;
-    case v1::LIGHT_SHAPE_SPHERE: return LightShape::kSphere;
-    case v1::LIGHT_SHAPE_POINT: return LightShape::kPoint;
-    case v1::LIGHT_SHAPE_DIRECTIONAL: return LightShape::kDirectional;
+    case v1::LIGHT_SHAPE_RECTANGLE:
+      return LightShape::kRectangle;
+    case v1::LIGHT_SHAPE_DISK:
+      return LightShape::kDisk;
+    case v1::LIGHT_SHAPE_SPHERE:
+      return LightShape::kSphere;
+    case v1::LIGHT_SHAPE_POINT:
+      return LightShape::kPoint;
+    case v1::LIGHT_SHAPE_DIRECTIONAL:
+      return LightShape::kDirectional;
     default:
-      throw InputError("shape of light " + std::to_string(light.id()), "must be set to a known shape",
+      throw InputError("shape of light " + std::to_string(light.id()),
+                       "must be set to a known shape",
                        std::to_string(static_cast<int>(light.shape())));
   }
 }
@@ -89,8 +97,8 @@ void read_transforms(const char* what,
   table.clear();
   for (const v1::Transform& t : transforms) {
     const std::string subject = what + std::to_string(t.id());
-    const glm::dmat4 matrix = matrix_from("transform of " + subject, t.has_world_from_local(),
-                                          t.world_from_local());
+    const glm::dmat4 matrix =
+        matrix_from("transform of " + subject, t.has_world_from_local(), t.world_from_local());
     if (!table.emplace(t.id(), matrix).second)
       throw InputError(subject, "must be listed once in a frame", "listed twice");
   }
@@ -126,7 +134,8 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   config.wire = checked_name("wire", request.wire(), wire_names(), config.wire);
   config.budget_ms = request.budget_ms();
   if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
-    throw InputError("budget", "must be finite and at least 0 ms", std::to_string(config.budget_ms));
+    throw InputError("budget", "must be finite and at least 0 ms",
+                     std::to_string(config.budget_ms));
   config.results = results_from(request, core);
   return config;
 }
@@ -137,8 +146,8 @@ void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config,
   const std::string subject = "camera of frame " + std::to_string(begin.index());
   if (!begin.has_camera()) throw InputError(subject, "must be present", "missing");
   const v1::Camera& camera = begin.camera();
-  frame.camera.view_from_world = matrix_from("view_from_world of " + subject,
-                                             camera.has_view_from_world(), camera.view_from_world());
+  frame.camera.view_from_world = matrix_from(
+      "view_from_world of " + subject, camera.has_view_from_world(), camera.view_from_world());
   frame.camera.clip_from_view = matrix_from("clip_from_view of " + subject,
                                             camera.has_clip_from_view(), camera.clip_from_view());
   frame.camera.jitter_px = {camera.jitter_x_px(), camera.jitter_y_px()};

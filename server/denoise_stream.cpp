@@ -17,8 +17,8 @@ DenoiseStream* DenoiseStream::start(ServiceState& state) {
   if (admitted)
     stream->read_on();
   else
-    stream->end(status_from(std::make_exception_ptr(
-        RefusedError(Refusal::kDraining, "the server is shutting down"))));
+    stream->end(status_from(
+        std::make_exception_ptr(RefusedError(Refusal::kDraining, "the server is shutting down"))));
   stream->unlock_and_finish(lock);
   return stream.get();
 }
@@ -213,8 +213,8 @@ void DenoiseStream::drain(std::chrono::milliseconds deadline) {
       static_cast<std::uint32_t>(deadline.count()));
   write_on();
   lock.unlock();
-  close(status_from(std::make_exception_ptr(
-      RefusedError(Refusal::kDraining, "the server is shutting down"))));
+  close(status_from(
+      std::make_exception_ptr(RefusedError(Refusal::kDraining, "the server is shutting down"))));
 }
 
 void DenoiseStream::close(const grpc::Status& status) {

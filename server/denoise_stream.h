@@ -2,12 +2,13 @@
 
 #include <chrono>
 #include <deque>
-#include <grpcpp/support/server_callback.h>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <grpcpp/support/server_callback.h>
 
 #include "holdfast/v1/denoise_service.pb.h"
 #include "server/frame_assembler.h"
@@ -36,8 +37,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
 
   /// Announces the shutdown, answers the frames in flight, then ends the stream.
   void drain(std::chrono::milliseconds deadline);
-  /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks are
-  /// still coming in; later frames are not accepted.
+  /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks
+  /// are still coming in; later frames are not accepted.
   void close(const grpc::Status& status);
   /// Empty before Hello.
   std::string session_id() const;
@@ -83,13 +84,13 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
-  bool reading_ = false;    ///< a read is under way
-  bool stalled_ = false;    ///< request_ holds a FrameBegin that waits for a slot
-  bool writing_ = false;    ///< a write is under way
-  bool read_all_ = false;   ///< the client has ended its side, or nothing more is to be read
-  bool closing_ = false;    ///< ends after the frame that is being read
-  bool broken_ = false;     ///< cancelled or disconnected: nothing can be sent
-  bool finished_ = false;   ///< Finish was called
+  bool reading_ = false;   ///< a read is under way
+  bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot
+  bool writing_ = false;   ///< a write is under way
+  bool read_all_ = false;  ///< the client has ended its side, or nothing more is to be read
+  bool closing_ = false;   ///< ends after the frame that is being read
+  bool broken_ = false;    ///< cancelled or disconnected: nothing can be sent
+  bool finished_ = false;  ///< Finish was called
   grpc::Status status_;
 };
 

@@ -14,7 +14,9 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
-std::string bytes_text(std::uint64_t bytes) { return std::to_string(bytes) + " bytes"; }
+std::string bytes_text(std::uint64_t bytes) {
+  return std::to_string(bytes) + " bytes";
+}
 
 }  // namespace
 
@@ -46,9 +48,10 @@ void FrameAssembler::begin(const v1::FrameBegin& message, FrameSlot& slot) {
 
 void FrameAssembler::announce(const v1::FramePlane& message) {
   if (message.plane() >= progress_.size())
-    throw InputError("plane number " + std::to_string(message.plane()),
-                     "must be less than the session's " + std::to_string(progress_.size()) + " planes",
-                     "unknown");
+    throw InputError(
+        "plane number " + std::to_string(message.plane()),
+        "must be less than the session's " + std::to_string(progress_.size()) + " planes",
+        "unknown");
   const PlaneId id = config_.denoiser.planes[message.plane()];
   Progress& progress = progress_[message.plane()];
   if (progress.size != 0)
@@ -73,9 +76,10 @@ void FrameAssembler::add(const v1::PlaneChunk& chunk) {
 
 void FrameAssembler::write(const v1::PlaneChunk& chunk) {
   if (chunk.plane() >= progress_.size())
-    throw InputError("plane number " + std::to_string(chunk.plane()),
-                     "must be less than the session's " + std::to_string(progress_.size()) + " planes",
-                     "unknown");
+    throw InputError(
+        "plane number " + std::to_string(chunk.plane()),
+        "must be less than the session's " + std::to_string(progress_.size()) + " planes",
+        "unknown");
   Progress& progress = progress_[chunk.plane()];
   const std::string name = "plane " + plane_name(config_.denoiser.planes[chunk.plane()]);
   const std::uint64_t bytes = chunk.data().size();

@@ -1,13 +1,13 @@
 #include "server/listen_address.h"
 
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
 #include <netdb.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <memory>
 
 #include "core/frame/error.h"
 
@@ -54,7 +54,8 @@ void check_unix(const std::string& address) {
   const std::string path = address.substr(std::strlen(kUnix));
   sockaddr_un name{};
   if (path.empty() || path.size() >= sizeof(name.sun_path))
-    refuse(address, "must have a path of 1.." + std::to_string(sizeof(name.sun_path) - 1) + " bytes",
+    refuse(address,
+           "must have a path of 1.." + std::to_string(sizeof(name.sun_path) - 1) + " bytes",
            std::to_string(path.size()) + " bytes");
   name.sun_family = AF_UNIX;
   std::memcpy(name.sun_path, path.data(), path.size());

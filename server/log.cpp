@@ -1,9 +1,9 @@
 #include "server/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-
 #include <algorithm>
 #include <array>
+
+#include <spdlog/sinks/stdout_sinks.h>
 
 #include "core/frame/error.h"
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <spdlog/logger.h>
 #include <string>
+
+#include <spdlog/logger.h>
 
 namespace holdfast::server {
 

@@ -1,10 +1,10 @@
 #include "server/random_token.h"
 
-#include <sys/random.h>
-
 #include <cerrno>
 #include <system_error>
 #include <vector>
+
+#include <sys/random.h>
 
 namespace holdfast::server {
 
@@ -28,8 +28,8 @@ bool equal_secrets(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
-    difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^
-                                        static_cast<unsigned char>(b[i]));
+    difference |=
+        static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
   return difference == 0;
 }
 

@@ -5,11 +5,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/task_arena.h>
 #include <optional>
 #include <thread>
 #include <vector>
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
 
 namespace holdfast::server {
 

@@ -1,11 +1,11 @@
 #include "server/server.h"
 
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
-#include <grpcpp/grpcpp.h>
-
 #include <condition_variable>
 #include <mutex>
 #include <thread>
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
 
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
@@ -34,10 +34,11 @@ const ServerConfig& checked(const ServerConfig& config) {
 class Timer {
  public:
   template <class F>
-  Timer(std::chrono::milliseconds period, F work) : thread_([this, period, work] {
-    std::unique_lock lock(mutex_);
-    while (!wake_.wait_for(lock, period, [this] { return stopping_; })) work();
-  }) {}
+  Timer(std::chrono::milliseconds period, F work)
+      : thread_([this, period, work] {
+          std::unique_lock lock(mutex_);
+          while (!wake_.wait_for(lock, period, [this] { return stopping_; })) work();
+        }) {}
   ~Timer() {
     {
       const std::lock_guard lock(mutex_);
@@ -130,7 +131,11 @@ class Server::Impl {
 
 Server::Server(const ServerConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 Server::~Server() = default;
-const std::string& Server::address() const { return impl_->address(); }
-void Server::drain(std::chrono::milliseconds deadline) { impl_->drain(deadline); }
+const std::string& Server::address() const {
+  return impl_->address();
+}
+void Server::drain(std::chrono::milliseconds deadline) {
+  impl_->drain(deadline);
+}
 
 }  // namespace holdfast::server

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+
 #include <spdlog/logger.h>
 
 #include "server/config.h"

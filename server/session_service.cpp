@@ -57,11 +57,12 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     response->set_recipe(config.denoiser.recipe);
     response->set_preset(config.denoiser.preset);
     response->set_memory_bytes(state_.sessions.bytes(*session));
-    state_.log->info("event=session_create session={} size={}x{} planes={} recipe={} preset={} "
-                     "budget_ms={} memory_mib={}",
-                     session->id(), config.denoiser.width, config.denoiser.height,
-                     config.denoiser.planes.size(), config.denoiser.recipe,
-                     config.denoiser.preset, config.budget_ms, response->memory_bytes() >> 20);
+    state_.log->info(
+        "event=session_create session={} size={}x{} planes={} recipe={} preset={} "
+        "budget_ms={} memory_mib={}",
+        session->id(), config.denoiser.width, config.denoiser.height, config.denoiser.planes.size(),
+        config.denoiser.recipe, config.denoiser.preset, config.budget_ms,
+        response->memory_bytes() >> 20);
   });
 }
 

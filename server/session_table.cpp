@@ -9,7 +9,9 @@ namespace {
 constexpr int kIdBytes = 8;      // enough to be unique; not a secret
 constexpr int kTokenBytes = 16;  // 128 bits: not to be guessed
 
-std::string mib(std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
+std::string mib(std::size_t bytes) {
+  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
+}
 
 }  // namespace
 
@@ -70,8 +72,9 @@ const SessionTable::Entry& SessionTable::checked(const std::string& id,
                                                  const std::string& token) const {
   const auto it = entries_.find(id);
   if (it == entries_.end() || !it->second.session)
-    throw RefusedError(Refusal::kUnknownSession,
-                       "session \"" + id.substr(0, 64) + "\" is unknown: never made, deleted or expired");
+    throw RefusedError(
+        Refusal::kUnknownSession,
+        "session \"" + id.substr(0, 64) + "\" is unknown: never made, deleted or expired");
   if (!equal_secrets(it->second.session->token(), token))
     throw RefusedError(Refusal::kWrongToken, "the token is not that of session " + id);
   return it->second;

@@ -22,7 +22,8 @@ class SessionTable {
   explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
 
   /// Makes a session with a random id and token. Its memory is counted before anything of its size
-  /// is allocated. Throws InputError for a bad configuration, RefusedError(kLimit) naming the limit.
+  /// is allocated. Throws InputError for a bad configuration, RefusedError(kLimit) naming the
+  /// limit.
   std::shared_ptr<Session> create(SessionConfig config);
 
   /// The session. Throws RefusedError(kUnknownSession, kWrongToken).

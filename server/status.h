@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+
 #include <grpcpp/support/status.h>
 
 #include "holdfast/v1/error.pb.h"

@@ -31,8 +31,8 @@ std::vector<std::int64_t> chosen_frames(const SequenceReader& sequence,
   return frames;
 }
 
-client::SessionOptions session_options(const SequenceReader& sequence,
-                                       const ReplayOptions& options, const std::string& address) {
+client::SessionOptions session_options(const SequenceReader& sequence, const ReplayOptions& options,
+                                       const std::string& address) {
   client::SessionOptions session;
   session.address = address;
   session.width = sequence.header().width;
@@ -93,9 +93,9 @@ class Replay {
  private:
   void pace(Clock::time_point start, std::size_t frame) const {
     if (options_.fps <= 0) return;
-    std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(
-                                              std::chrono::duration<double>(
-                                                  static_cast<double>(frame) / options_.fps)));
+    std::this_thread::sleep_until(
+        start + std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>(static_cast<double>(frame) / options_.fps)));
   }
 
   /// Writes an answer; false if there is none.
@@ -132,7 +132,7 @@ double percentile(std::vector<double> values, double fraction) {
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
-nlohmann::json percentiles(const std::vector<double>& values) {
+nlohmann::ordered_json percentiles(const std::vector<double>& values) {
   return {{"p50", percentile(values, 0.50)},
           {"p95", percentile(values, 0.95)},
           {"p99", percentile(values, 0.99)}};
@@ -153,7 +153,7 @@ ReplayResult replay_sequence(const ReplayOptions& options) {
   }
 }
 
-nlohmann::json replay_json(const ReplayResult& result) {
+nlohmann::ordered_json replay_json(const ReplayResult& result) {
   return {{"frames", result.frames},
           {"recipe", result.recipe},
           {"preset", result.preset},

@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 namespace holdfast::cli {
 
@@ -32,10 +33,10 @@ struct ReplayResult {
   std::int64_t frames = 0;
   std::string recipe, preset;
   int width = 0, height = 0;
-  std::vector<double> core_ms;   ///< of each frame, inside the denoiser
-  std::vector<double> total_ms;  ///< from submit to the last byte back, queueing included
-  std::uint64_t bytes_in = 0;    ///< plane bytes sent to the server
-  std::uint64_t bytes_out = 0;   ///< plane bytes received from it
+  std::vector<double> core_ms;       ///< of each frame, inside the denoiser
+  std::vector<double> total_ms;      ///< from submit to the last byte back, queueing included
+  std::uint64_t bytes_in = 0;        ///< plane bytes sent to the server
+  std::uint64_t bytes_out = 0;       ///< plane bytes received from it
   std::uint64_t non_finite_in = 0;   ///< values that the server repaired on the way in
   std::uint64_t non_finite_out = 0;  ///< result values that are not finite
 };
@@ -46,6 +47,6 @@ struct ReplayResult {
 ReplayResult replay_sequence(const ReplayOptions& options);
 
 /// The machine-readable form of a result.
-nlohmann::json replay_json(const ReplayResult& result);
+nlohmann::ordered_json replay_json(const ReplayResult& result);
 
 }  // namespace holdfast::cli

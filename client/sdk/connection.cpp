@@ -141,7 +141,8 @@ void Connection::handle_response() {
       if (assembler_.add(response_.plane_chunk())) complete();
       break;
     default:
-      break;  // Draining: the server closes the stream itself once the frames in flight are answered
+      break;  // Draining: the server closes the stream itself once the frames in flight are
+              // answered
   }
 }
 

@@ -2,11 +2,11 @@
 
 #include <condition_variable>
 #include <deque>
-#include <grpcpp/client_context.h>
-#include <grpcpp/support/client_callback.h>
 #include <mutex>
 #include <optional>
 
+#include <grpcpp/client_context.h>
+#include <grpcpp/support/client_callback.h>
 #include <holdfast/client.h>
 
 #include "client/sdk/frame_sender.h"
@@ -76,9 +76,9 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   v1::DenoiseResponse response_;
   int credits_ = 0;
   bool welcome_ = false, writing_ = false, finishing_ = false, writes_done_ = false;
-  bool ended_ = false;               ///< no more reads or writes may be started
+  bool ended_ = false;                  ///< no more reads or writes may be started
   std::optional<grpc::Status> status_;  ///< after OnDone
-  std::string violation_;            ///< how the server broke the protocol
+  std::string violation_;               ///< how the server broke the protocol
 };
 
 }  // namespace holdfast::client

@@ -16,8 +16,8 @@ class ResultAssembler {
   ResultAssembler(std::vector<PlaneId> results, int width, int height)
       : results_(std::move(results)), width_(width), height_(height) {}
 
-  /// Starts an answer with FrameResult. `reuse`: planes whose memory it may take. True if the answer
-  /// is complete.
+  /// Starts an answer with FrameResult. `reuse`: planes whose memory it may take. True if the
+  /// answer is complete.
   bool begin(const v1::FrameResult& result, PlaneSet&& reuse);
   /// Adds a piece; true if the answer is complete.
   bool add(const v1::PlaneChunk& chunk);

@@ -19,8 +19,8 @@ void throw_status(const std::string& address, const grpc::Status& status) {
     case grpc::StatusCode::UNKNOWN:
       throw ConnectionError(server + " cannot be reached: " + status.error_message());
     case grpc::StatusCode::CANCELLED:
-      throw ConnectionError("the connection to " + server + " was closed: " +
-                            status.error_message());
+      throw ConnectionError("the connection to " + server +
+                            " was closed: " + status.error_message());
     case grpc::StatusCode::DEADLINE_EXCEEDED:
       throw ConnectionError(server + " did not answer in time");
     default:

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <grpcpp/support/status.h>
 #include <string>
+
+#include <grpcpp/support/status.h>
 
 namespace holdfast::client {
 

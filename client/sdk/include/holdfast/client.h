@@ -73,9 +73,9 @@ struct FrameOutput {
   PlaneSet planes;                    ///< the results
   FrameTiming timing;
   bool history_reset = false;
-  double mean_history_frames = 0;     ///< over surface pixels and components
-  std::string preset;                 ///< that was used
-  std::vector<Repair> repaired;       ///< values that were not finite or out of range, by plane
+  double mean_history_frames = 0;  ///< over surface pixels and components
+  std::string preset;              ///< that was used
+  std::vector<Repair> repaired;    ///< values that were not finite or out of range, by plane
   std::uint64_t non_finite_out = 0;
 };
 
