@@ -18,6 +18,7 @@ struct ServerUnreachable : std::runtime_error {
 // CLI11's own errors) end with kBadInput, ServerUnreachable with kServerUnreachable, any other
 // exception with kFailed.
 void add_compare(CLI::App& app);
+void add_demo(CLI::App& app);
 void add_render(CLI::App& app);
 void add_replay(CLI::App& app);
 

@@ -7,16 +7,23 @@
 #include "client/cli/json_file.h"
 #include "client/cli/progress.h"
 #include "client/measure/comparison_text.h"
+#include "client/measure/report.h"
 
 namespace holdfast::cli {
 namespace {
 
 struct Options {
-  std::string test, reference, json;
+  std::string test, reference, json, html, mask = "image";
   std::vector<std::string> layers;
-  measure::Region region = measure::Region::kImage;
   bool no_flip = false, quiet = false;
 };
+
+void write_html(const Options& options, const measure::Comparison& result) {
+  const auto name = std::filesystem::canonical(options.test).filename().string();
+  measure::write_report(
+      options.html, "Holdfast: " + options.test + " against references",
+      {{options.reference, "", options.reference, {{name, options.test, result}}}});
+}
 
 void run(const Options& options) {
   measure::CompareOptions compare;
@@ -32,8 +39,10 @@ void run(const Options& options) {
   const measure::Comparison result = measure::compare(compare).front();
   progress.reset();
 
-  if (!options.json.empty()) write_json_file(options.json, comparison_json(result, options.region));
-  if (!options.quiet) std::fputs(comparison_table(result, options.region).c_str(), stdout);
+  const auto region = options.mask == "effect" ? measure::Region::kEffect : measure::Region::kImage;
+  if (!options.json.empty()) write_json_file(options.json, comparison_json(result, region));
+  if (!options.html.empty()) write_html(options, result);
+  if (!options.quiet) std::fputs(comparison_table(result, region).c_str(), stdout);
 }
 
 }  // namespace
@@ -46,14 +55,15 @@ void add_compare(CLI::App& app) {
       ->required();
   command->add_option("--reference", options->reference, "Sequence with references")->required();
   command
-      ->add_option("--mask", options->region,
-                   "Pixels judged: image (all but sky) or effect (where the reference changed by "
+      ->add_option("--mask", options->mask,
+                   "Pixels judged: image (all but sky), or effect (where the reference changed by "
                    "more than 0.02)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, measure::Region>{
-          {"image", measure::Region::kImage}, {"effect", measure::Region::kEffect}}));
+      ->check(CLI::IsMember({"image", "effect"}))
+      ->capture_default_str();
   command->add_option("--layers", options->layers, "Layers judged, comma separated; all if absent")
       ->delimiter(',');
   command->add_flag("--no-flip", options->no_flip, "Leave out FLIP, which takes most of the time");
+  command->add_option("--html", options->html, "Write a page with pictures, error maps and plots");
   command->add_option("--json", options->json, "Write the machine-readable result to this file");
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->callback([options] { run(*options); });

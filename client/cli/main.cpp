@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", "holdfast 0.1.0");
   add_compare(app);
+  add_demo(app);
   add_render(app);
   add_replay(app);
   try {

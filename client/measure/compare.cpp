@@ -118,6 +118,10 @@ std::vector<Comparison> compare(const CompareOptions& options) {
   for (auto& test : meters) test.resize(layers.size());
 
   std::int64_t done = 0;
+  const auto report = [&] {
+    if (options.progress) options.progress(done, static_cast<std::int64_t>(frames.size()));
+  };
+  report();
   for (const JudgedFrame frame : frames) {
     const auto references = read_references(sequence, frame, layers, tracks);
     tbb::parallel_for(std::size_t{0}, options.tests.size(), [&](std::size_t t) {
@@ -126,13 +130,15 @@ std::vector<Comparison> compare(const CompareOptions& options) {
       for (std::size_t i = 0; i < layers.size(); ++i)
         meters[t][i].add(references[i], layer_of(planes, layers[i], file));
     });
-    if (options.progress) options.progress(++done, static_cast<std::int64_t>(frames.size()));
+    ++done;
+    report();
   }
 
   std::vector<Comparison> out;
   for (const auto& test : meters) {
     Comparison& comparison = out.emplace_back();
     comparison.frames = static_cast<std::int64_t>(frames.size());
+    comparison.last_frame = frames.back().index;
     for (std::size_t i = 0; i < layers.size(); ++i)
       comparison.layers.push_back(
           {plane_name(layers[i]), measure_of(layers[i].kind), test[i].image(), test[i].effect()});

@@ -17,13 +17,14 @@ struct CompareOptions {
   std::vector<std::string> layers;  ///< plane names; empty = all that references and results share
   bool flip = true;                 ///< FLIP takes most of the time
   std::int64_t first = 0, last = std::numeric_limits<std::int64_t>::max();  ///< frames judged
-  /// Called after each judged frame with the frames done and their total.
+  /// Called at the start and after each judged frame with the frames done and their total.
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
 /// Errors of one result against the references, on the image and on the effect.
 struct Comparison {
-  std::int64_t frames = 0;  ///< judged
+  std::int64_t frames = 0;      ///< judged
+  std::int64_t last_frame = 0;  ///< index of the last one
   struct Layer {
     std::string name;
     Measure measure = Measure::kClip;

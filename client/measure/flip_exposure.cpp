@@ -48,7 +48,7 @@ std::vector<float> flip_exposures(const Image& reference_rgb, const Mask& surfac
     middle = median(values);
   }
   const double stop = std::log2(value_at_target() / static_cast<double>(middle));
-  const int count = std::max(2, static_cast<int>(std::ceil(stop - start)));
+  const int count = std::clamp(static_cast<int>(std::ceil(stop - start)), 2, kMostFlipExposures);
   std::vector<float> exposures;
   for (int i = 0; i < count; ++i)
     exposures.push_back(static_cast<float>(start + i * (stop - start) / (count - 1)));

@@ -6,6 +6,9 @@
 
 namespace holdfast::measure {
 
+/// Bounds time and memory where references span more than 16 stops.
+inline constexpr int kMostFlipExposures = 16;
+
 /// The exposures, in stops, at which HDR-FLIP compares an image pair (Andersson et al. 2021, sec.
 /// 4): from the one that maps the brightest luminance to 0.85 of the display to the one that maps
 /// the median there, N = max(2, ceil(stop - start)) of them, evenly spread. Only pixels on

@@ -1,0 +1,71 @@
+#include "client/measure/report_table.h"
+
+#include <array>
+#include <cmath>
+
+#include "client/measure/comparison_text.h"
+#include "client/measure/report_plot.h"
+
+namespace holdfast::measure {
+namespace {
+
+/// One column: what it shows and which direction is better.
+struct Column {
+  const char* name;
+  double LayerErrors::*value;
+  int digits;
+  bool high_is_better;
+};
+constexpr std::array<Column, 5> kColumns{{{"RMSE", &LayerErrors::rmse, 4, false},
+                                          {"PSNR dB", &LayerErrors::psnr, 2, true},
+                                          {"SSIM", &LayerErrors::ssim, 4, true},
+                                          {"FLIP", &LayerErrors::flip, 4, false},
+                                          {"flicker", &LayerErrors::flicker, 4, false}}};
+
+double value_of(const ReportResult& result, std::size_t layer, Region region,
+                const Column& column) {
+  return errors_of(result.comparison.layers[layer], region).*column.value;
+}
+
+/// The text of the column's best value; what reads the same is as good.
+std::string best_text(const ReportScene& scene, std::size_t layer, Region region,
+                      const Column& column) {
+  double best = std::nan("");
+  for (const ReportResult& result : scene.results) {
+    const double value = value_of(result, layer, region, column);
+    const bool better = column.high_is_better ? value > best : value < best;
+    if (std::isnan(best) || better) best = value;
+  }
+  return number_text(best, column.digits);
+}
+
+std::string cells(const ReportScene& scene, const ReportResult& result, std::size_t layer,
+                  Region region) {
+  std::string html;
+  for (const Column& column : kColumns) {
+    const std::string text = number_text(value_of(result, layer, region, column), column.digits);
+    const bool best =
+        scene.results.size() > 1 && text != "-" && text == best_text(scene, layer, region, column);
+    html += best ? "<td><b>" + text + "</b></td>" : "<td>" + text + "</td>";
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string table_html(const ReportScene& scene, std::size_t layer) {
+  std::string html =
+      "<div class=\"wide\"><table><thead><tr><th></th><th colspan=\"5\">whole image</th>"
+      "<th colspan=\"5\">where the effect moves</th></tr><tr><th>result</th>";
+  for (int region = 0; region < 2; ++region)
+    for (const Column& column : kColumns) html += std::string("<th>") + column.name + "</th>";
+  html += "</tr></thead><tbody>";
+  std::size_t line = 0;
+  for (const ReportResult& result : scene.results)
+    html += "<tr><th><i class=\"key c" + std::to_string(line++) + "\"></i>" + escaped(result.name) +
+            "</th>" + cells(scene, result, layer, Region::kImage) +
+            cells(scene, result, layer, Region::kEffect) + "</tr>";
+  return html + "</tbody></table></div>";
+}
+
+}  // namespace holdfast::measure
