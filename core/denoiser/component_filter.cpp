@@ -21,8 +21,9 @@ constexpr int kMeasured = kField + int{kShadowFieldChannels};
 
 constexpr int kStatisticsStep = 3;  // 9x9 window, tiled exactly
 
-// A signal without noise still gets a variance, relative to its square, so that ratios of variances
-// stay finite.
+// A window whose samples all agree still gets a variance: fewer than a hundred equal samples of a
+// visibility leave it that uncertain (ours, tuned on cylinder), and radiance has no scale but its own.
+constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-20f;
 
@@ -97,9 +98,9 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const float mean_square = square(s.means[kLuminance].at(x, y));
-      s.means[kSampleVariance].at(x, y) =
-          std::max(s.means[kSquare].at(x, y) - mean_square,
-                   kRelativeVarianceFloor * mean_square + kVarianceFloor);
+      const float floor = channels_ == 1 ? kVisibilityVarianceFloor
+                                         : kRelativeVarianceFloor * mean_square + kVarianceFloor;
+      s.means[kSampleVariance].at(x, y) = std::max(s.means[kSquare].at(x, y) - mean_square, floor);
       if (tracer == nullptr) continue;
       const float valid = s.means[kField + kShadowValid].at(x, y);
       for (int c = 0; c < 3; ++c)

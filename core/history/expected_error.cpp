@@ -1,6 +1,7 @@
 #include "core/history/expected_error.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
@@ -16,14 +17,26 @@ struct Estimate {
 };
 
 Estimate estimate(float samples, float difference, float variance, float window_spread,
-                  const ExpectedErrorRule& rule) {
+                  float threshold, const ExpectedErrorRule& rule) {
   if (!(samples > 0.0f)) return {};
   const float own = variance / samples;
   const float noise = (variance + own) * window_spread;
-  const float bias = std::max(difference * difference - rule.noise_threshold * noise, 0.0f);
+  const float bias = std::max(difference * difference - threshold * noise, 0.0f);
   const float share = bias / (bias + noise);
   const float left = bias * square(1.0f - share) + noise * square(share);
   return {own + rule.spatial_samples * left, share, samples};
+}
+
+/// The threshold of a pixel: a shadow that stays on its surface gives no reason to expect bias, so
+/// that only a large difference counts; the more it slides, the sooner.
+float noise_threshold(const HistorySources& sources, const ExpectedErrorRule& rule, int channels,
+                      int x, int y) {
+  if (channels == 3 || sources.shadow == nullptr || !sources.shadow->taps[0].at(x, y).any())
+    return rule.noise_threshold;
+  const float dx = sources.shadow->motion[0].at(x, y) - sources.surface->motion[0].at(x, y);
+  const float dy = sources.shadow->motion[1].at(x, y) - sources.surface->motion[1].at(x, y);
+  const float slide = std::min((std::abs(dx) + std::abs(dy)) / rule.slide_px, 1.0f);
+  return rule.rest_threshold + slide * (rule.noise_threshold - rule.rest_threshold);
 }
 
 /// The candidates of a pixel: for one channel the surface's and the shadow's histories, for three
@@ -68,9 +81,10 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   for_each_row(guides.view.height, [&](int y) {
     for (int x = 0; x < guides.view.width; ++x) {
       const float variance = sample_variance.at(x, y), window_spread = spread.at(x, y);
+      const float threshold = noise_threshold(sources, rule, channels, x, y);
       const auto promise = [&](int samples_slot, float difference) {
         return estimate(s.candidates[samples_slot].at(x, y), difference, variance, window_spread,
-                        rule);
+                        threshold, rule);
       };
       int slot = 0;  // of the chosen candidate's first value
       Estimate chosen;
@@ -94,8 +108,7 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
       for (int c = 0; c < channels; ++c) {
         const float h = s.candidates[slot + c].at(x, y) -
                         chosen.correction * s.bias[slot + c].at(x, y);
-        now.data[c].at(x, y) =
-            std::max(alpha * noisy[c].at(x, y) + (1.0f - alpha) * h, 0.0f);
+        now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * h;
       }
       now.samples().at(x, y) = std::clamp(samples, 1.0f, rule.most_samples);
       if (debug != nullptr) {

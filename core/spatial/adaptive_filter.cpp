@@ -8,14 +8,25 @@
 namespace holdfast {
 namespace {
 
-/// Narrows the footprint: precision times sqrt(sqrt(samples)).
-void narrow_footprint(const Signal& signal, Channels<float>& out) {
-  for_each_row(out.height(), [&](int y) {
-    const float* samples = signal.samples.row(y);
+/// Narrows the footprint by a local mean of the samples: precision times samples^(1/4).
+void narrow_footprint(const Guides& guides, const Signal& signal, FilterScratch& s) {
+  FilterRow pass;
+  pass.guides = &guides;
+  pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
+  pass.step = 2;
+  pass.channels = 1;
+  pass.spread = Spread::kVariance;
+  pass.in[0] = signal.samples;
+  pass.out[0] = s.guide[2];
+  pass.spread_in = signal.samples;
+  pass.spread_out = s.spread[1];  // not used
+  filter_image(pass);
+  for_each_row(guides.view.height, [&](int y) {
+    const float* samples = s.guide[2].row(y);
     for (int c = 0; c < 3; ++c) {
       const float* in = (*signal.footprint)[c].row(y);
-      float* to = out[c].row(y);
-      for (int x = 0; x < out.width(); ++x) to[x] = in[x] * std::sqrt(std::sqrt(samples[x]));
+      float* to = s.footprint[c].row(y);
+      for (int x = 0; x < guides.view.width; ++x) to[x] = in[x] * std::sqrt(std::sqrt(samples[x]));
     }
   });
 }
@@ -33,7 +44,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
   pass.channels = 1;
   pass.spread = Spread::kSamples;
   if (signal.footprint != nullptr)
-    for (int c = 0; c < 3; ++c) pass.footprint[c] = std::as_const(s.footprint)[c];
+    for (int c = 0; c < 3; ++c) pass.footprint[c] = (*signal.footprint)[c];
   for (int level = 0; level < 2; ++level) {
     pass.step = 1 << level;
     pass.in[0] = std::as_const(s.guide)[level == 0 ? 0 : 2];
@@ -56,8 +67,8 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 
 void adaptive_filter(const Guides& guides, const Signal& signal,
                      const AdaptiveFilterSettings& settings, FilterScratch& s, Plane& out) {
-  if (signal.footprint != nullptr) narrow_footprint(signal, s.footprint);
   prepare_luminance(guides, signal, settings.luminance_sigma, s);
+  if (signal.footprint != nullptr) narrow_footprint(guides, signal, s);
 
   FilterRow pass;
   pass.guides = &guides;
