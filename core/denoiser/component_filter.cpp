@@ -22,7 +22,8 @@ constexpr int kMeasured = kField + int{kShadowFieldChannels};
 constexpr int kStatisticsStep = 3;  // 9x9 window, tiled exactly
 
 // A window whose samples all agree still gets a variance: fewer than a hundred equal samples of a
-// visibility leave it that uncertain (ours, tuned on cylinder), and radiance has no scale but its own.
+// visibility leave it that uncertain (ours, tuned on cylinder), and radiance has no scale but its
+// own.
 constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-20f;
@@ -34,6 +35,7 @@ Scratch::Scratch(int width, int height, bool any_radiance, bool any_shadow, bool
     : noisy(width, height, any_radiance ? 3 : 1),
       measured(width, height, any_shadow ? kMeasured : kField),
       means(width, height, any_shadow ? kMeasured : kField),
+      measured_activity(width, height),
       window(width, height),
       filter(width, height) {
   if (any_shadow) {
@@ -93,8 +95,13 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
     }
   });
   if (tracer != nullptr) tracer->measure(s.measured, kField);
-  window_means(input.frames.now, s.measured, tracer != nullptr ? kMeasured : kField,
-               kStatisticsStep, s.window, s.means);
+  // Where a visibility is constant and nothing blocks, so are all other channels.
+  const Channels<float>& measured = s.measured;
+  const ChannelView<const float> varying[2] = {
+      measured[kLuminance], measured[tracer != nullptr ? kField + kShadowRatio : kLuminance]};
+  s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
+  window_means(input.frames.now, measured, tracer != nullptr ? kMeasured : kField, kStatisticsStep,
+               s.window, s.means, &s.measured_activity);
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const float mean_square = square(s.means[kLuminance].at(x, y));
@@ -111,9 +118,8 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
 }
 
 void ComponentFilter::blend(const ComponentInput& input, bool with_shadow, Scratch& s) {
-  const HistorySources sources{
-      recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
-      with_shadow ? &s.shadow : nullptr};
+  const HistorySources sources{recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
+                               with_shadow ? &s.shadow : nullptr};
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
@@ -136,8 +142,8 @@ void ComponentFilter::filter(const ComponentInput& input, bool with_footprint, S
                       with_footprint ? &s.footprint : nullptr};
   if (recipe_.svgf_filter) {
     const ComponentHistory& moments = now;
-    svgf_filter(input.frames.now, signal, moments.moment(1), moments.moment(2),
-                recipe_.svgf_levels, s.filter, now.data, out);
+    svgf_filter(input.frames.now, signal, moments.moment(1), moments.moment(2), recipe_.svgf_levels,
+                s.filter, now.data, out);
   } else {
     adaptive_filter(input.frames.now, signal,
                     channels_ == 1 ? recipe_.visibility_filter : recipe_.radiance_filter, s.filter,

@@ -8,15 +8,16 @@ namespace holdfast {
 /// Images that the components of a session need while they are filtered, one after the other.
 /// Nothing in here outlives a component's turn.
 struct Scratch {
-  Channels<float> noisy;     ///< the sanitised input: 1 or 3
-  Channels<float> measured;  ///< luminance, its square, then the shadow field
-  Channels<float> means;     ///< local means of `measured`; then [1] is the sample variance
-  Channels<float> footprint; ///< E, F, G of the penumbra's footprint
+  Channels<float> noisy;      ///< the sanitised input: 1 or 3
+  Channels<float> measured;   ///< luminance, its square, then the shadow field
+  Channels<float> means;      ///< local means of `measured`; then [1] is the sample variance
+  Channels<float> footprint;  ///< E, F, G of the penumbra's footprint
   ShadowHistory shadow;
+  ActivityMap measured_activity;
   WindowScratch window;
   BlendScratch blend;
   FilterScratch filter;
-  Channels<float> debug;     ///< DebugChannel; only where debug planes are asked for
+  Channels<float> debug;  ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
   Scratch(int width, int height, bool any_radiance, bool any_shadow, bool blend, bool debug);

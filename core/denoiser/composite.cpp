@@ -1,5 +1,6 @@
 #include "core/denoiser/composite.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <vector>
@@ -39,31 +40,33 @@ std::vector<Term> terms_of(const PlaneSet& input, const PlaneSet& results) {
   return terms;
 }
 
-float finite_or_zero(float v) { return std::isfinite(v) ? v : 0.0f; }
+/// Adds one term to a row of the sum.
+void add_term(const Term& term, int channel, int y, const float* depth, int width, float* out) {
+  const float* factor = term.factor ? term.factor->channel(channel).row(y) : nullptr;
+  const float* signal = nullptr;
+  if (term.signal) signal = term.signal->channel(term.signal->channels() == 1 ? 0 : channel).row(y);
+  for (int x = 0; x < width; ++x) {
+    if (!term.on_sky && !(depth[x] > 0.0f)) continue;
+    const float f = factor ? (std::isfinite(factor[x]) ? factor[x] : 0.0f) : 1.0f;
+    out[x] += signal ? f * signal[x] : f;
+  }
+}
 
 }  // namespace
 
 std::uint64_t compose(const Guides& guides, const PlaneSet& input, PlaneSet& results) {
-  const int width = guides.view.width, height = guides.view.height;
-  Plane& out = results.add({PlaneKind::kComposite, {}}, width, height);
+  const int width = guides.view.width;
+  Plane& out = results.add({PlaneKind::kComposite, {}}, width, guides.view.height);
   const std::vector<Term> terms = terms_of(input, results);
   std::atomic<std::uint64_t> non_finite{0};
-  for_each_row(height, [&](int y) {
+  for_each_row(guides.view.height, [&](int y) {
     std::uint64_t bad = 0;
-    for (int c = 0; c < 3; ++c)
-      for (int x = 0; x < width; ++x) {
-        const bool surface = guides.depth().at(x, y) > 0.0f;
-        float sum = 0;
-        for (const Term& term : terms) {
-          if (!surface && !term.on_sky) continue;
-          const float factor = term.factor ? finite_or_zero(term.factor->channel(c).at(x, y)) : 1.0f;
-          const float signal =
-              term.signal ? term.signal->channel(term.signal->channels() == 1 ? 0 : c).at(x, y) : 1.0f;
-          sum += factor * signal;
-        }
-        bad += std::isfinite(sum) ? 0 : 1;
-        out.channel(c).at(x, y) = sum;
-      }
+    for (int c = 0; c < 3; ++c) {
+      float* row = out.channel(c).row(y);
+      std::fill_n(row, width, 0.0f);
+      for (const Term& term : terms) add_term(term, c, y, guides.depth().row(y), width, row);
+      for (int x = 0; x < width; ++x) bad += std::isfinite(row[x]) ? 0 : 1;
+    }
     if (bad > 0) non_finite += bad;
   });
   return non_finite;

@@ -11,7 +11,8 @@ namespace holdfast {
 /// planes of `input`:
 ///   sum over lights of unshadowed * visibility + specular * glossy + albedo * indirect + emission
 /// Absent albedo and specular count as 1, other absent terms as 0; sky is emission alone. Values of
-/// the input planes that are not finite count as 0. Returns the number of non-finite values written.
+/// the input planes that are not finite count as 0. Returns the number of non-finite values
+/// written.
 std::uint64_t compose(const Guides& guides, const PlaneSet& input, PlaneSet& results);
 
 }  // namespace holdfast

@@ -23,7 +23,8 @@ class StageTimer {
   explicit StageTimer(std::vector<StageTime>& out) : out_(out), last_(Clock::now()) {}
   void end(std::string stage) {
     const auto now = Clock::now();
-    out_.push_back({std::move(stage), std::chrono::duration<double, std::milli>(now - last_).count()});
+    out_.push_back(
+        {std::move(stage), std::chrono::duration<double, std::milli>(now - last_).count()});
     last_ = now;
   }
 
@@ -37,9 +38,10 @@ void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
   for (const PlaneId id : config.planes) {
     const Plane& plane = planes.at(id);
     if (plane.width() != config.width || plane.height() != config.height)
-      throw InputError("plane " + plane_name(id),
-                       "must be " + std::to_string(config.width) + "x" + std::to_string(config.height),
-                       std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
+      throw InputError(
+          "plane " + plane_name(id),
+          "must be " + std::to_string(config.width) + "x" + std::to_string(config.height),
+          std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
   }
   for (const Plane& plane : planes)
     if (std::find(config.planes.begin(), config.planes.end(), plane.id()) == config.planes.end())
@@ -170,7 +172,8 @@ void Denoiser::reset() {
 const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 
 std::size_t Denoiser::memory_bytes() const {
-  std::size_t sum = impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
+  std::size_t sum =
+      impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
   for (const Guides& g : impl_->guides) sum += g.depth_normal.bytes() + g.id.bytes();
   for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
   return sum;
@@ -200,10 +203,10 @@ std::vector<PlaneId> result_planes(const DenoiserConfig& config) {
       continue;
     out.push_back(id);
     if (!config.debug_planes) continue;
-    const Component component =
-        id.kind == PlaneKind::kVisibility ? id.component
-        : id.kind == PlaneKind::kGlossy   ? Component{ComponentKind::kGlossy, 0}
-                                          : Component{ComponentKind::kIndirect, 0};
+    const Component component = id.kind == PlaneKind::kVisibility ? id.component
+                                : id.kind == PlaneKind::kGlossy
+                                    ? Component{ComponentKind::kGlossy, 0}
+                                    : Component{ComponentKind::kIndirect, 0};
     for (const PlaneKind kind :
          {PlaneKind::kDebugMotion, PlaneKind::kDebugHistory, PlaneKind::kDebugConfidence})
       out.push_back({kind, component});

@@ -36,12 +36,12 @@ struct RepairCount {
 /// What happened to one frame.
 struct FrameReport {
   std::int64_t index = 0;
-  double ms = 0;                       ///< wall time inside the core
+  double ms = 0;  ///< wall time inside the core
   std::vector<StageTime> stages;
-  bool history_reset = false;          ///< first frame, cut or reset
-  double mean_history_frames = 0;      ///< over surface pixels, all components
-  std::vector<RepairCount> repaired;   ///< planes with at least one repaired value
-  std::uint64_t non_finite_out = 0;    ///< always 0; counted, not assumed
+  bool history_reset = false;         ///< first frame, cut or reset
+  double mean_history_frames = 0;     ///< over surface pixels, all components
+  std::vector<RepairCount> repaired;  ///< planes with at least one repaired value
+  std::uint64_t non_finite_out = 0;   ///< always 0; counted, not assumed
 };
 
 /// Filters the frames of one session in order. Owns the history; allocates nothing per frame after

@@ -60,9 +60,8 @@ std::uint64_t load_normals(const Plane& normal, Guides& out) {
 
 void load_ids(const Plane* ids, Guides& out) {
   if (ids == nullptr) return;  // stays 0
-  for_each_row(ids->height(), [&](int y) {
-    std::copy_n(ids->ids().row(y), ids->width(), out.id[0].row(y));
-  });
+  for_each_row(ids->height(),
+               [&](int y) { std::copy_n(ids->ids().row(y), ids->width(), out.id[0].row(y)); });
 }
 
 std::uint64_t load_signal(const Plane& plane, Channels<float>& out) {

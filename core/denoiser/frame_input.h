@@ -20,8 +20,8 @@ std::uint64_t load_depth(const Plane& depth, Guides& out);
 std::uint64_t load_normals(const Plane& normal, Guides& out);
 void load_ids(const Plane* ids, Guides& out);
 
-/// A component's plane into `out`. Negative or non-finite values become 0 (visibility: 1, nothing is
-/// known to block), too large ones kLargestRadiance.
+/// A component's plane into `out`. Negative or non-finite values become 0 (visibility: 1, nothing
+/// is known to block), too large ones kLargestRadiance.
 std::uint64_t load_signal(const Plane& plane, Channels<float>& out);
 
 }  // namespace holdfast

@@ -24,7 +24,8 @@ void check_lights(const DenoiserConfig& config) {
   std::set<std::uint32_t> ids;
   for (const Light& light : config.lights) {
     const std::string subject = "light " + std::to_string(light.id);
-    if (!ids.insert(light.id).second) throw InputError(subject, "must be listed once", "listed twice");
+    if (!ids.insert(light.id).second)
+      throw InputError(subject, "must be listed once", "listed twice");
     for (const double size : {light.width, light.height, light.radius})
       if (!(size >= 0 && size <= 1e12))
         throw InputError("size of " + subject, "must be in 0..1e12 metres", std::to_string(size));
@@ -39,9 +40,8 @@ void check_planes(const DenoiserConfig& config) {
     if (id.kind >= PlaneKind::kGradient)
       throw InputError(subject, "must be an input plane of the session's size",
                        id.kind == PlaneKind::kGradient ? "a gradient plane" : "a result plane");
-    const bool known = std::any_of(config.lights.begin(), config.lights.end(), [&](const Light& l) {
-      return l.id == id.component.light;
-    });
+    const bool known = std::any_of(config.lights.begin(), config.lights.end(),
+                                   [&](const Light& l) { return l.id == id.component.light; });
     if (plane_traits(id.kind).per_light && !known)
       throw InputError(subject, "must belong to a light of the session",
                        "of unknown light " + std::to_string(id.component.light));
@@ -72,10 +72,9 @@ Plan Plan::make(const DenoiserConfig& config) {
       plan.components.push_back({id.component, follows});
       plan.any_shadow |= follows;
     } else if (id.kind == PlaneKind::kGlossy || id.kind == PlaneKind::kIndirect) {
-      plan.components.push_back({{id.kind == PlaneKind::kGlossy ? ComponentKind::kGlossy
-                                                                : ComponentKind::kIndirect,
-                                  0},
-                                 false});
+      plan.components.push_back(
+          {{id.kind == PlaneKind::kGlossy ? ComponentKind::kGlossy : ComponentKind::kIndirect, 0},
+           false});
       plan.any_radiance = true;
     }
   }
@@ -88,11 +87,14 @@ std::string Plan::text() const {
   for (const Entry& entry : components) {
     const std::string name = component_name(entry.component);
     const bool visibility = entry.component.kind == ComponentKind::kVisibility;
-    text += name + ": local statistics" + (entry.follows_shadows ? ", penumbra footprint" : "") + "\n";
+    text +=
+        name + ": local statistics" + (entry.follows_shadows ? ", penumbra footprint" : "") + "\n";
     if (history) {
-      const bool shadow = entry.follows_shadows && (recipe.vectors == HistoryVectors::kPaperShadow ||
-                                                    recipe.vectors == HistoryVectors::kCandidates);
-      text += name + ": history along " + (shadow ? "shadow and surface" : "surface") + " vectors, " +
+      const bool shadow =
+          entry.follows_shadows && (recipe.vectors == HistoryVectors::kPaperShadow ||
+                                    recipe.vectors == HistoryVectors::kCandidates);
+      text += name + ": history along " + (shadow ? "shadow and surface" : "surface") +
+              " vectors, " +
               (recipe.vectors == HistoryVectors::kCandidates
                    ? "blended by expected error"
                    : (recipe.accumulation.rectification == Rectification::kNone

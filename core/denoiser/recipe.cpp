@@ -5,7 +5,8 @@
 namespace holdfast {
 namespace {
 
-/// What all recipes share: the same filters and constants, so that they differ by their name's part.
+/// What all recipes share: the same filters and constants, so that they differ by their name's
+/// part.
 Recipe base(std::string name, HistoryVectors vectors) {
   Recipe recipe;
   recipe.name = std::move(name);

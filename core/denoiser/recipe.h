@@ -23,8 +23,8 @@ enum class HistoryVectors {
 struct Recipe {
   std::string name;
   HistoryVectors vectors = HistoryVectors::kSurface;
-  AccumulationRule accumulation;             ///< unless vectors is kCandidates
-  ExpectedErrorRule visibility_blend;        ///< if vectors is kCandidates
+  AccumulationRule accumulation;       ///< unless vectors is kCandidates
+  ExpectedErrorRule visibility_blend;  ///< if vectors is kCandidates
   ExpectedErrorRule radiance_blend;
   AdaptiveFilterSettings visibility_filter;  ///< unless svgf_filter
   AdaptiveFilterSettings radiance_filter;

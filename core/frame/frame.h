@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <map>
+
+#include <glm/glm.hpp>
 
 #include "core/frame/light.h"
 #include "core/frame/plane.h"

@@ -12,7 +12,7 @@ struct Guides {
   Channels<float> depth_normal;  ///< planar view depth in metres, then the normal's X, Y, Z
   Channels<std::uint32_t> id;    ///< object ids, 0 where none was given
   ViewGeometry view;
-  PixelRays<float> rays;         ///< of `view`
+  PixelRays<float> rays;  ///< of `view`
 
   Guides() = default;
   Guides(int width, int height) : depth_normal(width, height, 4), id(width, height, 1) {}

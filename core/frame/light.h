@@ -2,10 +2,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <numbers>
 #include <optional>
 #include <string_view>
+
+#include <glm/glm.hpp>
 
 namespace holdfast {
 

@@ -16,8 +16,8 @@ std::ptrdiff_t padded_stride(int width) {
 }
 
 AlignedBuffer::AlignedBuffer(std::size_t bytes)
-    : data_(static_cast<std::byte*>(::operator new(std::max<std::size_t>(bytes, 64),
-                                                   std::align_val_t{64}))),
+    : data_(static_cast<std::byte*>(
+          ::operator new (std::max<std::size_t>(bytes, 64), std::align_val_t{64}))),
       size_(bytes) {
   std::memset(data_.get(), 0, bytes);
 }

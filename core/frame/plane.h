@@ -39,7 +39,7 @@ class AlignedBuffer {
 
  private:
   struct Free {
-    void operator()(std::byte* p) const { ::operator delete(p, std::align_val_t{64}); }
+    void operator()(std::byte* p) const { ::operator delete (p, std::align_val_t{64}); }
   };
   std::unique_ptr<std::byte, Free> data_;
   std::size_t size_ = 0;
@@ -63,7 +63,9 @@ class Channels {
   std::size_t bytes() const { return buffer_.size(); }
   explicit operator bool() const { return count_ > 0; }
 
-  ChannelView<T> operator[](int c) { return {base() + c * stride_ * height_, width_, height_, stride_}; }
+  ChannelView<T> operator[](int c) {
+    return {base() + c * stride_ * height_, width_, height_, stride_};
+  }
   ChannelView<const T> operator[](int c) const {
     return {base() + c * stride_ * height_, width_, height_, stride_};
   }
@@ -116,7 +118,8 @@ class PlaneSet {
   Plane* find(PlaneId id);
   /// The plane; throws InputError naming it if it is missing.
   const Plane& at(PlaneId id) const;
-  /// Adds a zero-filled plane, or returns the one that is there if the size agrees (else replaces it).
+  /// Adds a zero-filled plane, or returns the one that is there if the size agrees (else replaces
+  /// it).
   Plane& add(PlaneId id, int width, int height);
   void remove(PlaneId id);
   void clear() { planes_.clear(); }

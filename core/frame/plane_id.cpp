@@ -98,16 +98,15 @@ std::optional<PlaneId> match(const PlaneTraits& traits, std::string_view name,
 
 std::string component_name(Component component) {
   switch (component.kind) {
-    case ComponentKind::kVisibility: return "light" + std::to_string(component.light) + ".visibility";
+    case ComponentKind::kVisibility:
+      return "light" + std::to_string(component.light) + ".visibility";
     case ComponentKind::kGlossy: return "glossy";
     case ComponentKind::kIndirect: return "indirect";
   }
   return {};
 }
 
-const PlaneTraits& plane_traits(PlaneKind kind) {
-  return kTraits[static_cast<std::size_t>(kind)];
-}
+const PlaneTraits& plane_traits(PlaneKind kind) { return kTraits[static_cast<std::size_t>(kind)]; }
 
 PlaneId component_plane(Component component) {
   switch (component.kind) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/matrix_inverse.hpp>
 #include <string>
+
+#include <glm/gtc/matrix_inverse.hpp>
 
 #include "core/frame/error.h"
 

@@ -13,12 +13,12 @@ namespace holdfast {
 /// frame. Matrices are composed in double; `T` is the type they are applied in.
 template <class T>
 struct ObjectMotion {
-  glm::mat<3, 3, T> rotate{1};       ///< previous normal = rotate * current normal, then normalise
-  glm::mat<4, 4, T> carry{1};        ///< previous relative point from current relative point
-  glm::mat<4, 4, T> prev_pixel{1};   ///< (x w, y w, depth, w) of the previous frame from the
-                                     ///< current relative point
-  bool at_rest = false;              ///< object and camera both stand still: motion is exactly 0
-  bool traceable = true;             ///< false for a singular transform: nothing corresponds
+  glm::mat<3, 3, T> rotate{1};      ///< previous normal = rotate * current normal, then normalise
+  glm::mat<4, 4, T> carry{1};       ///< previous relative point from current relative point
+  glm::mat<4, 4, T> prev_pixel{1};  ///< (x w, y w, depth, w) of the previous frame from the
+                                    ///< current relative point
+  bool at_rest = false;             ///< object and camera both stand still: motion is exactly 0
+  bool traceable = true;            ///< false for a singular transform: nothing corresponds
 };
 
 /// Follows cameras, objects and lights from frame to frame and answers where a point was before.
@@ -56,7 +56,8 @@ class SceneMotion {
   struct Track {
     glm::dmat4 now{1}, before{1};
   };
-  static void follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved, bool first);
+  static void follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
+                     bool first);
   ObjectMotion<float> compose(const Track& track) const;
 
   std::map<std::uint32_t, Track> object_tracks_, light_tracks_;

@@ -45,8 +45,8 @@ ViewGeometry::ViewGeometry(const Camera& camera, int image_width, int image_heig
   const auto xy = [&](glm::dvec2 p, double d) {
     return view_xy(camera.clip_from_view, ndc_from_pixel(p, size.x, size.y), d);
   };
-  const double growth = glm::distance(xy({1, 0}, 2), xy({0, 0}, 2)) /
-                        glm::distance(xy({1, 0}, 1), xy({0, 0}, 1));
+  const double growth =
+      glm::distance(xy({1, 0}, 2), xy({0, 0}, 2)) / glm::distance(xy({1, 0}, 1), xy({0, 0}, 1));
   const bool perspective = growth > 1.5;
   rays.near_weight = perspective ? 0 : 1;
   rays.far_weight = perspective ? 1 : 0;

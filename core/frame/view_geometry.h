@@ -23,18 +23,22 @@ struct PixelRays {
 
   template <class U>
   PixelRays<U> cast() const {
-    return {glm::vec<3, U>(lateral_0), glm::vec<3, U>(lateral_x), glm::vec<3, U>(lateral_y),
-            glm::vec<3, U>(forward),   U(near_weight),            U(far_weight)};
+    return {glm::vec<3, U>(lateral_0),
+            glm::vec<3, U>(lateral_x),
+            glm::vec<3, U>(lateral_y),
+            glm::vec<3, U>(forward),
+            U(near_weight),
+            U(far_weight)};
   }
 };
 
 /// What the core derives from a camera and an image size, in double.
 struct ViewGeometry {
   int width = 0, height = 0;
-  glm::dvec3 origin{0};              ///< camera position in the world, metres
-  PixelRays<double> rays;            ///< of unjittered pixel positions
-  glm::dmat4 pixel_from_relative{1}; ///< camera-relative point -> (x w, y w, depth, w)
-  double pixel_angle = 0;            ///< footprint of a pixel at depth 1 m (perspective), metres
+  glm::dvec3 origin{0};               ///< camera position in the world, metres
+  PixelRays<double> rays;             ///< of unjittered pixel positions
+  glm::dmat4 pixel_from_relative{1};  ///< camera-relative point -> (x w, y w, depth, w)
+  double pixel_angle = 0;             ///< footprint of a pixel at depth 1 m (perspective), metres
 
   ViewGeometry() = default;
   /// Throws InputError for a matrix that is not finite or not invertible.

@@ -60,8 +60,7 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
   const float most_samples = (2.0f - rule.alpha) / rule.alpha;
   for_each_row(guides.view.height, [&](int y) {
     for (int x = 0; x < guides.view.width; ++x) {
-      const bool by_shadow =
-          sources.shadow != nullptr && sources.shadow->taps[0].at(x, y).any();
+      const bool by_shadow = sources.shadow != nullptr && sources.shadow->taps[0].at(x, y).any();
       const bool valid =
           by_shadow || (sources.surface != nullptr && sources.surface->taps[0].at(x, y).any());
       Colour history{};
@@ -75,7 +74,8 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
           history[static_cast<std::size_t>(c)] = gather(before.data[c], taps);
         if (rule.rectification == Rectification::kClamp ||
             (rule.rectification == Rectification::kClampFallback && !by_shadow))
-          history = clamp_to_neighbourhood(guides, noisy, channels, x, y, rule.clamp_gamma, history);
+          history =
+              clamp_to_neighbourhood(guides, noisy, channels, x, y, rule.clamp_gamma, history);
       }
       const float base = std::max(rule.alpha, 1.0f / (samples + 1.0f));
       const float alpha = 1.0f - trust * (1.0f - base);
@@ -84,9 +84,9 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
             alpha * noisy[c].at(x, y) + (1.0f - alpha) * history[static_cast<std::size_t>(c)];
       now.samples().at(x, y) = std::min(1.0f + trust * samples, most_samples);
       if (now.has_moments()) {
-        const float l = channels == 1 ? noisy[0].at(x, y)
-                                      : luminance(noisy[0].at(x, y), noisy[1].at(x, y),
-                                                  noisy[2].at(x, y));
+        const float l = channels == 1
+                            ? noisy[0].at(x, y)
+                            : luminance(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
         float moment = l;
         for (int order = 1; order <= 2; ++order, moment *= l)
           now.moment(order).at(x, y) =

@@ -7,45 +7,50 @@ namespace holdfast {
 
 /// Constants of the blend by expected error. All ours; tuned on fence and cylinder at two speeds.
 struct ExpectedErrorRule {
-  int window_step = 2;          ///< window of the bias estimate: 3 + 2 step pixels wide
-  float noise_threshold = 0.4f; ///< share of a window mean's variance that is not taken for bias
-  float slow_threshold = 6.0f;  ///< added where a shadow slides slowly over its surface ...
-  float slow_px = 3.0f;         ///< ... falling by 1/e with this motion over the surface, pixels
-  float rest_threshold = 20.0f; ///< added where it does not slide at all ...
-  float rest_px = 0.05f;        ///< ... falling by 1/e with this motion (rounding, not sliding)
-  float spatial_samples = 40;   ///< samples that the spatial filter adds: it averages noise, not bias
-  float surface_advantage = 10; ///< the surface vector must promise this much less error to replace
-                                ///< the shadow vector: the smallest of two estimates flatters itself
-  float most_samples = 64;      ///< cap of the samples credited to history
+  int window_step = 2;           ///< window of the bias estimate: 3 + 2 step pixels wide
+  float noise_threshold = 0.4f;  ///< share of a window mean's variance that is not taken for bias
+  float slow_threshold = 6.0f;   ///< added where a shadow slides slowly over its surface ...
+  float slow_px = 3.0f;          ///< ... falling by 1/e with this motion over the surface, pixels
+  float rest_threshold = 20.0f;  ///< added where it does not slide at all ...
+  float rest_px = 0.05f;         ///< ... falling by 1/e with this motion (rounding, not sliding)
+  float spatial_samples =
+      40;  ///< samples that the spatial filter adds: it averages noise, not bias
+  float surface_advantage =
+      10;                   ///< the surface vector must promise this much less error to replace
+                            ///< the shadow vector: the smallest of two estimates flatters itself
+  float most_samples = 64;  ///< cap of the samples credited to history
 };
 
 /// Scratch of `blend_by_expected_error`.
 struct BlendScratch {
   Channels<float> candidates;   ///< 4: values and samples of the candidates
-  Channels<float> differences;  ///< kMaxFilterChannels: candidate minus noisy
+  Channels<float> differences;  ///< 3: candidate minus noisy
   Channels<float> bias;         ///< 3: their local means
+  ActivityMap activity;         ///< of the differences
 
   BlendScratch() = default;
   BlendScratch(int width, int height)
       : candidates(width, height, 4),
         differences(width, height, 3),
-        bias(width, height, 3) {}
+        bias(width, height, 3),
+        activity(width, height) {}
   std::size_t bytes() const { return candidates.bytes() + differences.bytes() + bias.bytes(); }
 };
 
 /// Blends the current frame with the candidate history of least expected error. For a candidate h
-/// with n samples, sample variance v, and local mean difference d = mean(h - noisy) over a window of
-/// m samples:
+/// with n samples, sample variance v, and local mean difference d = mean(h - noisy) over a window
+/// of m samples:
 ///   u   = (v + v/n) / m                    variance of d
 ///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls to noise_threshold
 ///                                          the faster a shadow slides over its surface
 ///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)
-/// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 + (k/(1+k))^2/n'
-/// with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial filter that follows
-/// averages noise away, and bias not. Without a candidate, out = noisy and N = 1, so that a history
-/// that fits nowhere leaves exactly the spatial filter.
-///   reads noisy, `before`, `sample_variance` | writes `now`, `debug` (may be null) | halo of the window
+/// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 +
+/// (k/(1+k))^2/n' with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial
+/// filter that follows averages noise away, and bias not. Without a candidate, out = noisy and N =
+/// 1, so that a history that fits nowhere leaves exactly the spatial filter.
+///   reads noisy, `before`, `sample_variance` | writes `now`, `debug` (may be null) | halo of the
+///   window
 void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
                              const HistorySources& sources,
                              ChannelView<const float> sample_variance,

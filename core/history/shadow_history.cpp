@@ -9,7 +9,8 @@
 namespace holdfast {
 namespace {
 
-constexpr float kLeastValid = 1e-3f;  // share of blocked samples nearby below which none is borrowed
+constexpr float kLeastValid =
+    1e-3f;  // share of blocked samples nearby below which none is borrowed
 
 /// TRMV's trust in the vector that leads to previous pixel (px, py): compares the receiver's plane
 /// with the surface seen there. 0 where there is none.
@@ -53,9 +54,10 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
                      : find_taps(frames.previous, pixel.x, pixel.y, receiver);
           motion_x = pixel.x - (static_cast<float>(x) + 0.5f);
           motion_y = pixel.y - (static_cast<float>(y) + 0.5f);
-          trust = !taps.any()                    ? 0.0f
-                  : rule == ShadowRule::kPaper ? falloff_at(frames.previous, receiver, pixel.x, pixel.y)
-                                               : 1.0f;
+          trust = !taps.any() ? 0.0f
+                  : rule == ShadowRule::kPaper
+                      ? falloff_at(frames.previous, receiver, pixel.x, pixel.y)
+                      : 1.0f;
         }
       }
       out.taps[0].at(x, y) = taps;

@@ -42,7 +42,10 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
         if (pixel.in_front) {
           motion_x = pixel.x - (static_cast<float>(x) + 0.5f);
           motion_y = pixel.y - (static_cast<float>(y) + 0.5f);
-          taps = find_taps(frames.previous, pixel.x, pixel.y, previous_receiver(now, object, x, y));
+          taps = motion_x == 0.0f && motion_y == 0.0f && same_surface(now, frames.previous, x, y)
+                     ? identity_taps(frames.previous, x, y)
+                     : find_taps(frames.previous, pixel.x, pixel.y,
+                                 previous_receiver(now, object, x, y));
         }
       }
       out.taps[0].at(x, y) = taps;

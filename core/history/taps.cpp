@@ -32,7 +32,9 @@ class TapTest {
 };
 
 /// The corner of the 2x2 block that holds tap column or row `t`, moved inside the image.
-int block_start(int t, int size) { return t < 0 ? 0 : (t > size - 2 ? (size > 1 ? size - 2 : 0) : t); }
+int block_start(int t, int size) {
+  return t < 0 ? 0 : (t > size - 2 ? (size > 1 ? size - 2 : 0) : t);
+}
 
 }  // namespace
 
@@ -93,6 +95,13 @@ Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid)
 
 Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver) {
   return bilinear_taps(previous, x, y, TapTest(previous, receiver));
+}
+
+bool same_surface(const Guides& now, const Guides& previous, int x, int y) {
+  bool same = now.id[0].at(x, y) == previous.id[0].at(x, y);
+  for (int c = 0; c < now.depth_normal.count(); ++c)
+    same &= now.depth_normal[c].at(x, y) == previous.depth_normal[c].at(x, y);
+  return same;
 }
 
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y) {

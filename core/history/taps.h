@@ -17,8 +17,8 @@ struct Taps {
 
 /// What a history pixel must show to count as the same receiver one frame ago.
 struct Receiver {
-  glm::vec3 point;     ///< relative to the previous camera, metres
-  glm::vec3 normal;    ///< unit, previous frame
+  glm::vec3 point;   ///< relative to the previous camera, metres
+  glm::vec3 normal;  ///< unit, previous frame
   std::uint32_t id;
 };
 
@@ -31,7 +31,10 @@ inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
 /// renormalised; else the nearest valid tap of the 3x3 neighbourhood; else none.
 Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver);
 
-/// The same, where any surface inside the image is valid.
+/// True where both frames show exactly the same surface at pixel (x, y).
+bool same_surface(const Guides& now, const Guides& previous, int x, int y);
+
+/// As find_taps, where any surface inside the image is valid.
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y);
 
 /// Taps at pixel (x, y) itself, weight 1.

@@ -12,22 +12,22 @@
 #else
 #define HOLDFAST_TARGET_V4 __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 #endif
-#define HOLDFAST_KERNEL(name, Args)                                                             \
-  static void name##_portable(const Args& args) noexcept { name##_body(args); }                 \
-  __attribute__((target("arch=x86-64-v2"))) static void name##_v2(const Args& args) noexcept {  \
-    name##_body(args);                                                                          \
-  }                                                                                             \
-  __attribute__((target("arch=x86-64-v3"))) static void name##_v3(const Args& args) noexcept {  \
-    name##_body(args);                                                                          \
-  }                                                                                             \
-  HOLDFAST_TARGET_V4 static void name##_v4(const Args& args) noexcept { name##_body(args); }    \
-  void name(const Args& args) noexcept {                                                        \
-    switch (selected_isa()) {                                                                   \
-      case Isa::kPortable: return name##_portable(args);                                        \
-      case Isa::kX86_64V2: return name##_v2(args);                                              \
-      case Isa::kX86_64V3: return name##_v3(args);                                              \
-      case Isa::kX86_64V4: return name##_v4(args);                                              \
-    }                                                                                           \
+#define HOLDFAST_KERNEL(name, Args)                                                            \
+  static void name##_portable(const Args& args) noexcept { name##_body(args); }                \
+  __attribute__((target("arch=x86-64-v2"))) static void name##_v2(const Args& args) noexcept { \
+    name##_body(args);                                                                         \
+  }                                                                                            \
+  __attribute__((target("arch=x86-64-v3"))) static void name##_v3(const Args& args) noexcept { \
+    name##_body(args);                                                                         \
+  }                                                                                            \
+  HOLDFAST_TARGET_V4 static void name##_v4(const Args& args) noexcept { name##_body(args); }   \
+  void name(const Args& args) noexcept {                                                       \
+    switch (selected_isa()) {                                                                  \
+      case Isa::kPortable: return name##_portable(args);                                       \
+      case Isa::kX86_64V2: return name##_v2(args);                                             \
+      case Isa::kX86_64V3: return name##_v3(args);                                             \
+      case Isa::kX86_64V4: return name##_v4(args);                                             \
+    }                                                                                          \
   }
 #else
 #define HOLDFAST_KERNEL(name, Args) \

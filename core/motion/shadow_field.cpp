@@ -45,7 +45,8 @@ void ShadowTracer::measure(Channels<float>& out, int first) const {
     for (int x = 0; x < now_.view.width; ++x) {
       float field[kShadowFieldChannels] = {};
       if (blocked(x, y)) {
-        const glm::vec4 light = relative_from_light_ * light_point(light_, u_.at(x, y), v_.at(x, y));
+        const glm::vec4 light =
+            relative_from_light_ * light_point(light_, u_.at(x, y), v_.at(x, y));
         const glm::vec3 point = now_.position_at(x, y), normal = now_.normal_at(x, y);
         const glm::vec3 to_light = glm::vec3(light) - light.w * point;
         const float light_m = glm::length(to_light);

@@ -20,7 +20,8 @@ struct BlockerPlanes {
 ///   kShadowValid      1
 ///   kShadowRatio      distance of the blocker over that of the light sample, 0..1; for a
 ///                     directional light the distance of the blocker in metres
-///   kShadowPrecision  E, F, G in 1 / px^2: the penumbra's footprint, half the inverse covariance of
+///   kShadowPrecision  E, F, G in 1 / px^2: the penumbra's footprint, half the inverse covariance
+///   of
 ///                     the light's shape as the blocker casts it on the receiver's plane, in pixels
 enum ShadowFieldChannel {
   kShadowValid,

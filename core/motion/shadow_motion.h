@@ -10,10 +10,10 @@ namespace holdfast {
 /// metres, world axes.
 template <class T>
 struct ShadowSample {
-  glm::vec<3, T> surface;   ///< s' = T_s^-1 s
-  glm::vec<3, T> normal;    ///< n', unit
-  glm::vec<3, T> blocker;   ///< b' = T_b^-1 b
-  glm::vec<4, T> light;     ///< l': a point (w = 1), or the direction towards the light (w = 0)
+  glm::vec<3, T> surface;  ///< s' = T_s^-1 s
+  glm::vec<3, T> normal;   ///< n', unit
+  glm::vec<3, T> blocker;  ///< b' = T_b^-1 b
+  glm::vec<4, T> light;    ///< l': a point (w = 1), or the direction towards the light (w = 0)
 };
 
 /// Where the ray from l' through b' meets the receiver's previous plane:

@@ -8,6 +8,9 @@
 namespace holdfast {
 namespace {
 
+constexpr int kLuminanceReach = 3;       // px, of the two passes that prepare the luminance
+constexpr float kRestTolerance = 1e-6f;  // absolute; rounding of a constant visibility
+
 /// Narrows the footprint by a local mean of the samples: precision times samples^(1/4).
 void narrow_footprint(const Guides& guides, const Signal& signal, FilterScratch& s) {
   FilterRow pass;
@@ -15,6 +18,7 @@ void narrow_footprint(const Guides& guides, const Signal& signal, FilterScratch&
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.step = 2;
   pass.channels = 1;
+  pass.activity = &s.activity;
   pass.spread = Spread::kVariance;
   pass.in[0] = signal.samples;
   pass.out[0] = s.guide[2];
@@ -42,6 +46,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
   pass.channels = 1;
+  pass.activity = &s.activity;
   pass.spread = Spread::kSamples;
   if (signal.footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = (*signal.footprint)[c];
@@ -67,20 +72,26 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 
 void adaptive_filter(const Guides& guides, const Signal& signal,
                      const AdaptiveFilterSettings& settings, FilterScratch& s, Plane& out) {
+  ChannelView<const float> values[3];
+  for (int c = 0; c < signal.channels; ++c) values[c] = (*signal.values)[c];
+  // Twice the reach of all passes: beyond it, nothing that a copied tile leaves out can matter.
+  const int reach = 2 * ((1 << settings.levels) - 1) + kLuminanceReach;
+  s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, 2 * reach,
+                     kRestTolerance);
   prepare_luminance(guides, signal, settings.luminance_sigma, s);
   if (signal.footprint != nullptr) narrow_footprint(guides, signal, s);
 
   FilterRow pass;
   pass.guides = &guides;
   pass.channels = signal.channels;
+  pass.activity = &s.activity;
   pass.spread = Spread::kSamples;
   pass.luminance = std::as_const(s.guide)[0];
   pass.inverse_luminance_sigma = std::as_const(s.guide)[1];
   if (signal.footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = std::as_const(s.footprint)[c];
   for (int level = 0; level < settings.levels; ++level) {
-    const Channels<float>& from =
-        level == 0 ? *signal.values : (level % 2 == 1 ? s.even : s.odd);
+    const Channels<float>& from = level == 0 ? *signal.values : (level % 2 == 1 ? s.even : s.odd);
     Channels<float>& to = level % 2 == 0 ? s.even : s.odd;
     for (int c = 0; c < signal.channels; ++c) {
       pass.in[c] = from[c];

@@ -7,15 +7,15 @@ namespace holdfast {
 
 /// Constants of `adaptive_filter` that differ between components.
 struct AdaptiveFilterSettings {
-  int levels = 3;                  ///< a-trous levels, >= 1
-  float luminance_sigma = 16.0f;   ///< in standard deviations of the edge-stopping luminance
+  int levels = 3;                 ///< a-trous levels, >= 1
+  float luminance_sigma = 16.0f;  ///< in standard deviations of the edge-stopping luminance
 };
 
 /// The filter of every recipe but `svgf`: a 5x5 a-trous filter whose taps count by the samples
-/// behind them (a pixel without history borrows from neighbours with long history, not the reverse),
-/// stopped at geometry, at edges of a prefiltered luminance, and, for a visibility, outside the
-/// penumbra's footprint (axis-aligned filtering of soft shadows, Mehta et al. 2012). The footprint
-/// narrows with samples^-1/8 per axis, since what has less noise needs less blur.
+/// behind them (a pixel without history borrows from neighbours with long history, not the
+/// reverse), stopped at geometry, at edges of a prefiltered luminance, and, for a visibility,
+/// outside the penumbra's footprint (axis-aligned filtering of soft shadows, Mehta et al. 2012).
+/// The footprint narrows with samples^-1/8 per axis, since what has less noise needs less blur.
 ///   reads guides, signal | writes `out` (1 or 3 channels) | halo 2 (2^levels - 1) + 3 px
 void adaptive_filter(const Guides& guides, const Signal& signal,
                      const AdaptiveFilterSettings& settings, FilterScratch& scratch, Plane& out);

@@ -8,12 +8,12 @@
 namespace holdfast {
 namespace {
 
-constexpr int kBlock = 128;  // pixels; the block's state stays in the first-level cache
+constexpr int kBlock = ActivityMap::kTileWidth;  // the block's state stays in the first cache
 
 /// Per-pixel terms of a block: the tangent plane, the normal and the running sums.
 struct Block {
-  float plane_0[kBlock], plane_x[kBlock], plane_y[kBlock];    // times the tap's depth
-  float offset_0[kBlock], offset_x[kBlock], offset_y[kBlock]; // added
+  float plane_0[kBlock], plane_x[kBlock], plane_y[kBlock];     // times the tap's depth
+  float offset_0[kBlock], offset_x[kBlock], offset_y[kBlock];  // added
   float nx[kBlock], ny[kBlock], nz[kBlock];
   float luminance[kBlock], inverse_sigma[kBlock];
   float footprint_xx[kBlock], footprint_xy[kBlock], footprint_yy[kBlock];
@@ -22,7 +22,8 @@ struct Block {
 };
 
 /// The distance of the point at depth d and offset (dx, dy) pixels from the tangent plane, divided
-/// by its tolerance, is d (plane_0 + dx plane_x + dy plane_y) + offset_0 + dx offset_x + dy offset_y.
+/// by its tolerance, is d (plane_0 + dx plane_x + dy plane_y) + offset_0 + dx offset_x + dy
+/// offset_y.
 HOLDFAST_INLINE void load_planes(const FilterRow& a, int x0, int count, Block& b) {
   const PixelRays<float>& rays = a.guides->rays;
   const float py = static_cast<float>(a.y) + 0.5f;
@@ -63,8 +64,8 @@ HOLDFAST_INLINE void load_planes(const FilterRow& a, int x0, int count, Block& b
 }
 
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void add_tap(const FilterRow& a, int x0, int first, int last, int qy, int dx, int dy,
-                             float h, Block& b) {
+HOLDFAST_INLINE void add_tap(const FilterRow& a, int x0, int first, int last, int qy, int dx,
+                             int dy, float h, Block& b) {
   const float* __restrict depth = a.guides->depth().row(qy) + x0 + dx;
   const float* __restrict gx = a.guides->normal(0).row(qy) + x0 + dx;
   const float* __restrict gy = a.guides->normal(1).row(qy) + x0 + dx;
@@ -154,12 +155,24 @@ HOLDFAST_INLINE void filter_block(const FilterRow& a, int x0, int count, Block& 
   }
 }
 
+template <int C>
+HOLDFAST_INLINE void copy_block(const FilterRow& a, int x0, int count) {
+  for (int c = 0; c < C; ++c)
+    for (int i = 0; i < count; ++i) a.out[c].at(x0 + i, a.y) = a.in[c].at(x0 + i, a.y);
+  for (int i = 0; i < count; ++i) a.spread_out.at(x0 + i, a.y) = a.spread_in.at(x0 + i, a.y);
+}
+
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_row_body(const FilterRow& a) {
   Block block;
   const int width = a.guides->view.width;
-  for (int x0 = 0; x0 < width; x0 += kBlock)
-    filter_block<C, kLuminance, kSpread, kFootprint>(a, x0, min_of(kBlock, width - x0), block);
+  for (int x0 = 0; x0 < width; x0 += kBlock) {
+    const int count = min_of(kBlock, width - x0);
+    if (a.activity == nullptr || a.activity->active(x0, a.y))
+      filter_block<C, kLuminance, kSpread, kFootprint>(a, x0, count, block);
+    else
+      copy_block<C>(a, x0, count);
+  }
 }
 
 // The combinations that the pipeline uses.

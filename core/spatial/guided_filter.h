@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/frame/guides.h"
+#include "core/spatial/activity.h"
 
 /// One pass of an edge-stopping filter with holes (a-trous) over up to kMaxFilterChannels signals.
 ///
@@ -52,6 +52,8 @@ struct FilterRow {
   ChannelView<const float> inverse_luminance_sigma;
   /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
   ChannelView<const float> footprint[3];
+  /// Tiles at rest copy their inputs. Null: all tiles are active.
+  const ActivityMap* activity = nullptr;
 };
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline

@@ -40,16 +40,16 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
     }
   });
   for (int level = 0; level < levels; ++level) {
-    const Signal from{level == 0 ? signal.values : (level % 2 == 1 ? &s.even : &s.odd),
-                      signal.channels, {}, {}};
+    const Signal from{
+        level == 0 ? signal.values : (level % 2 == 1 ? &s.even : &s.odd), signal.channels, {}, {}};
     Channels<float>& to = level % 2 == 0 ? s.even : s.odd;
     const auto variance = std::as_const(s.spread)[level % 2];
     for_each_row(height, [&](int y) {
       for (int x = 0; x < width; ++x) {
         const float l = from.luminance_at(x, y);
         s.guide[0].at(x, y) = l;
-        s.guide[1].at(x, y) =
-            1.0f / (kLuminanceSigma * std::sqrt(smooth_variance(variance, x, y)) + 1e-4f * l + 1e-12f);
+        s.guide[1].at(x, y) = 1.0f / (kLuminanceSigma * std::sqrt(smooth_variance(variance, x, y)) +
+                                      1e-4f * l + 1e-12f);
       }
     });
     FilterRow pass;

@@ -11,12 +11,13 @@ WindowScratch::WindowScratch(int width, int height)
 }
 
 ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
-                                      int second_step, WindowScratch& scratch,
-                                      Channels<float>& out) {
+                                      int second_step, WindowScratch& scratch, Channels<float>& out,
+                                      const ActivityMap* activity) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = count;
+  pass.activity = activity;
   pass.spread = Spread::kVariance;
   for (int c = 0; c < count; ++c) {
     pass.in[c] = in[c];
