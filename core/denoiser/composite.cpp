@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/denoiser/frame_input.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
@@ -17,27 +18,27 @@ struct Term {
   bool on_sky;
 };
 
-std::vector<Term> terms_of(const PlaneSet& input, const PlaneSet& results) {
+std::vector<Term> terms_of(std::span<const PlaneId> signals, const PlaneSet& input,
+                           const PlaneSet& results) {
   std::vector<Term> terms;
-  for (const Plane& plane : results) {
-    const std::uint32_t light = plane.id().component.light;
-    switch (plane.id().kind) {
-      case PlaneKind::kVisibility:
-        if (const Plane* unshadowed = input.find(PlaneId::of_light(PlaneKind::kUnshadowed, light)))
-          terms.push_back({unshadowed, &plane, false});
-        break;
-      case PlaneKind::kGlossy:
-        terms.push_back({input.find({PlaneKind::kSpecular, {}}), &plane, false});
-        break;
-      case PlaneKind::kIndirect:
-        terms.push_back({input.find({PlaneKind::kAlbedo, {}}), &plane, false});
-        break;
-      default: break;
+  for (const PlaneId id : signals) {
+    const Plane* signal = &results.at(id);
+    if (id.kind == PlaneKind::kVisibility) {
+      const auto unshadowed = PlaneId::of_light(PlaneKind::kUnshadowed, id.component.light);
+      if (const Plane* factor = input.find(unshadowed)) terms.push_back({factor, signal, false});
+    } else {
+      const bool glossy = id.kind == PlaneKind::kGlossy;
+      terms.push_back(
+          {input.find({glossy ? PlaneKind::kSpecular : PlaneKind::kAlbedo, {}}), signal, false});
     }
   }
   if (const Plane* emission = input.find({PlaneKind::kEmission, {}}))
     terms.push_back({emission, nullptr, true});
   return terms;
+}
+
+float usable_factor(float v) {
+  return std::isfinite(v) ? std::clamp(v, -kLargestRadiance, kLargestRadiance) : 0.0f;
 }
 
 /// Adds one term to a row of the sum.
@@ -47,17 +48,18 @@ void add_term(const Term& term, int channel, int y, const float* depth, int widt
   if (term.signal) signal = term.signal->channel(term.signal->channels() == 1 ? 0 : channel).row(y);
   for (int x = 0; x < width; ++x) {
     if (!term.on_sky && !(depth[x] > 0.0f)) continue;
-    const float f = factor ? (std::isfinite(factor[x]) ? factor[x] : 0.0f) : 1.0f;
+    const float f = factor ? usable_factor(factor[x]) : 1.0f;
     out[x] += signal ? f * signal[x] : f;
   }
 }
 
 }  // namespace
 
-std::uint64_t compose(const Guides& guides, const PlaneSet& input, PlaneSet& results) {
+std::uint64_t compose(const Guides& guides, std::span<const PlaneId> signals, const PlaneSet& input,
+                      PlaneSet& results) {
   const int width = guides.view.width;
   Plane& out = results.add({PlaneKind::kComposite, {}}, width, guides.view.height);
-  const std::vector<Term> terms = terms_of(input, results);
+  const std::vector<Term> terms = terms_of(signals, input, results);
   std::atomic<std::uint64_t> non_finite{0};
   for_each_row(guides.view.height, [&](int y) {
     std::uint64_t bad = 0;

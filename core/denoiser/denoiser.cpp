@@ -61,8 +61,10 @@ class Denoiser::Impl {
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) g = Guides(c.width, c.height);
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
-    for (const Plan::Entry& entry : plan.components)
+    for (const Plan::Entry& entry : plan.components) {
       filters.emplace_back(entry.component, plan.recipe, c.width, c.height);
+      signals.push_back(component_plane(entry.component));
+    }
   }
 
   FrameReport filter(const Frame& frame, PlaneSet& results) {
@@ -90,7 +92,7 @@ class Denoiser::Impl {
       run_component(frame, frames, plan.components[k], filters[k], results, report);
       timer.end(component_name(filters[k].component()));
     }
-    report.non_finite_out = compose(guides[now], frame.planes, results);
+    report.non_finite_out = compose(guides[now], signals, frame.planes, results);
     timer.end("composite");
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -151,6 +153,7 @@ class Denoiser::Impl {
   SurfaceHistory surface;
   SceneMotion scene;
   std::vector<ComponentFilter> filters;
+  std::vector<PlaneId> signals;  ///< the planes of `filters`
   std::int64_t last_index = std::numeric_limits<std::int64_t>::min();
   bool has_past = false;
 };
@@ -164,10 +167,7 @@ FrameReport Denoiser::filter(const Frame& frame, PlaneSet& results) {
   return impl_->filter(frame, results);
 }
 
-void Denoiser::reset() {
-  impl_->scene.reset();
-  impl_->has_past = false;
-}
+void Denoiser::reset() { impl_->has_past = false; }
 
 const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 

@@ -40,11 +40,11 @@ struct FrameReport {
   std::vector<StageTime> stages;
   bool history_reset = false;         ///< first frame, cut or reset
   double mean_history_frames = 0;     ///< over surface pixels, all components
-  std::vector<RepairCount> repaired;  ///< planes with at least one repaired value
+  std::vector<RepairCount> repaired;  ///< depth, normal and signal planes with repairs
   std::uint64_t non_finite_out = 0;   ///< always 0; counted, not assumed
 };
 
-/// Filters the frames of one session in order. Owns the history; allocates nothing per frame after
+/// Filters the frames of one session in order. Owns the history; allocates no image per frame after
 /// the first. Not thread-safe; one instance serves one session, many instances share the pool.
 class Denoiser {
  public:
@@ -60,7 +60,7 @@ class Denoiser {
   /// non-finite matrix): then neither history nor `results` has changed.
   FrameReport filter(const Frame& frame, PlaneSet& results);
 
-  /// Forgets all history; the next frame starts anew.
+  /// Forgets all history; the next frame starts anew. Where objects and lights stand is kept.
   void reset();
 
   const DenoiserConfig& config() const;

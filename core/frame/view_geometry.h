@@ -45,8 +45,8 @@ struct ViewGeometry {
   ViewGeometry(const Camera& camera, int image_width, int image_height);
 };
 
-/// A projected point: pixel position and planar view depth in metres. Behind the camera, x and y
-/// are 0 and `in_front` is false.
+/// A projected point: pixel position and planar view depth in metres. Behind the camera, or beyond
+/// 1e9 pixels, x and y are 0 and `in_front` is false.
 template <class T>
 struct PixelPoint {
   T x, y, depth;
@@ -58,8 +58,9 @@ template <class T>
 PixelPoint<T> project(const glm::mat<4, 4, T>& pixel_from_relative, const glm::vec<3, T>& point) {
   const glm::vec<4, T> h = pixel_from_relative * glm::vec<4, T>(point, T(1));
   const bool in_front = h.w > T(0) && h.z > T(0);
-  const T inv_w = in_front ? T(1) / h.w : T(0);
-  return {h.x * inv_w, h.y * inv_w, h.z, in_front};
+  const T x = in_front ? h.x / h.w : T(0), y = in_front ? h.y / h.w : T(0);
+  const T reach = x * x + y * y;  // also keeps overflow from passing for a position
+  return reach < T(1e18) ? PixelPoint<T>{x, y, h.z, in_front} : PixelPoint<T>{0, 0, h.z, false};
 }
 
 }  // namespace holdfast

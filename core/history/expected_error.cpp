@@ -106,7 +106,11 @@ struct Blend {
         samples = 1.0f / (square(alpha) + square(1.0f - alpha) / std::max(chosen.samples, k));
       }
       for (int c = 0; c < now.channels; ++c) {
-        const float h = candidates[slot + c][x] - chosen.correction * bias[slot + c][x];
+        // A correction may not leave the range of the signal: radiance is not negative, visibility
+        // stays within 0..1 or what it was.
+        const float given = candidates[slot + c][x];
+        const float most = radiance ? given + std::abs(bias[slot + c][x]) : std::max(given, 1.0f);
+        const float h = std::clamp(given - chosen.correction * bias[slot + c][x], 0.0f, most);
         now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * h;
       }
       samples_out[x] = std::clamp(samples, 1.0f, rule.most_samples);
