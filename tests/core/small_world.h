@@ -2,8 +2,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "core/frame/frame.h"
 #include "core/frame/guides.h"

@@ -55,8 +55,8 @@ TEST(ViewGeometry, PositionsAgreeWithTheCameraMatrices) {
       const double depth = random.uniform(0.2, 90);
       const glm::dvec3 world = view.origin + view.rays.position(px, py, depth);
       const glm::dvec4 in_view = camera.view_from_world * glm::dvec4(world, 1);
-      const auto pixel = pixel_from_clip(camera.clip_from_view * in_view, double{kWidth},
-                                         double{kHeight});
+      const auto pixel =
+          pixel_from_clip(camera.clip_from_view * in_view, double{kWidth}, double{kHeight});
       EXPECT_NEAR(-in_view.z, depth, 1e-9);
       EXPECT_NEAR(pixel.x, px, 1e-9);
       EXPECT_NEAR(pixel.y, py, 1e-9);
