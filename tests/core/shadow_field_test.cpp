@@ -117,6 +117,10 @@ TEST(ShadowTracer, BorrowedBlockersMoveWithTheNearestBlockedSample) {
   world.move();
   const int x = 24, y = 16;
   world.block(x + 2, y, 0.2f, 0.2f, 0.5);
+  for (const int away : {-3, 3}) {  // farther ones, of a static blocker
+    world.block(x + away, y + away, 0.2f, 0.2f, 0.5);
+    world.id.ids().at(x + away, y + away) = 77;
+  }
   const auto pixel = world.tracer().follow_borrowed(x, y, 0.5f);
   ASSERT_TRUE(pixel.in_front);
   const glm::dvec3 s = world.surface(x, y), centre(world.light_now[3]);
