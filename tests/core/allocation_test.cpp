@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include <gtest/gtest.h>
+
+#include "tests/core/denoiser_world.h"
+
+namespace {
+std::atomic<std::size_t> largest_allocation{0};
+
+void note(std::size_t bytes) {
+  std::size_t seen = largest_allocation.load();
+  while (seen < bytes && !largest_allocation.compare_exchange_weak(seen, bytes)) {
+  }
+}
+}  // namespace
+
+[[gnu::noinline]] void* operator new(std::size_t bytes) {
+  note(bytes);
+  if (void* p = std::malloc(std::max<std::size_t>(bytes, 1))) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  note(bytes);
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(step, (bytes + step - 1) / step * step)) return p;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace holdfast {
+namespace {
+
+// Reports, the tables of the scene and the task scheduler may take small pieces; an image of this
+// size has 33 kB, a row of it 520 bytes.
+TEST(Denoiser, AllocatesNothingOfAnImagesSizePerFrameAfterTheFirst) {
+  for (const std::string& recipe : recipe_names()) {
+    DenoiserConfig config = test::full_config(130, 64);
+    config.recipe = recipe;
+    config.debug_planes = true;
+    Denoiser denoiser(config);
+    PlaneSet results;
+    for (int index = 0; index < 5; ++index) {
+      Frame frame = test::noisy_frame(config, index);
+      frame.cut = index == 3;
+      largest_allocation = 0;
+      denoiser.filter(frame, results);
+      if (index == 0) {
+        EXPECT_GT(largest_allocation, 130u * 64u * 4u) << "the results' planes: the count counts";
+      } else {
+        EXPECT_LT(largest_allocation, 2048u) << recipe << " frame " << index;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,32 @@
+#include "core/kernels/isa.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace holdfast {
+namespace {
+
+TEST(Isa, PortableIsAlwaysAvailableAndPlainest) {
+  const auto isas = available_isas();
+  ASSERT_FALSE(isas.empty());
+  EXPECT_EQ(isas.front(), Isa::kPortable);
+  EXPECT_TRUE(std::is_sorted(isas.begin(), isas.end()));
+}
+
+TEST(Isa, SelectionCanBeOverridden) {
+  const Isa before = selected_isa();
+  select_isa(Isa::kPortable);
+  EXPECT_EQ(selected_isa(), Isa::kPortable);
+  select_isa(before);
+}
+
+TEST(Isa, NamesAreThoseOfTheDocumentation) {
+  EXPECT_EQ(isa_name(Isa::kPortable), "portable");
+  EXPECT_EQ(isa_name(Isa::kX86_64V2), "x86-64-v2");
+  EXPECT_EQ(isa_name(Isa::kX86_64V3), "x86-64-v3");
+  EXPECT_EQ(isa_name(Isa::kX86_64V4), "x86-64-v4");
+}
+
+}  // namespace
+}  // namespace holdfast
