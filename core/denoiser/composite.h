@@ -12,8 +12,8 @@ namespace holdfast {
 /// indirect planes) and the noise-free planes of `input`:
 ///   sum over lights of unshadowed * visibility + specular * glossy + albedo * indirect + emission
 /// Absent albedo and specular count as 1, other absent terms as 0; sky is emission alone. Values of
-/// the input planes that are not finite count as 0, larger ones than kLargestRadiance as that. Returns the number of non-finite values
-/// written.
+/// the input planes that are not finite count as 0, larger ones than kLargestRadiance as that.
+/// Returns the number of non-finite values written.
 std::uint64_t compose(const Guides& guides, std::span<const PlaneId> signals, const PlaneSet& input,
                       PlaneSet& results);
 
