@@ -25,6 +25,18 @@ struct Rendered {
   std::vector<Frame> frames;
 };
 
+TEST(RenderedFrames, HaveInputOnWhichHistoryActs) {
+  const Rendered fence("fence", "reliable", 1);
+  const auto& planes = fence.config.planes;
+  for (const PlaneKind kind :
+       {PlaneKind::kBlockerDistance, PlaneKind::kBlockerId, PlaneKind::kLightSample})
+    EXPECT_NE(std::find(planes.begin(), planes.end(), PlaneId::of_light(kind, 0)), planes.end());
+  EXPECT_NE(fence.frames[0].lights.at(0), fence.frames[1].lights.at(0)) << "the light moves";
+  const Rendered plain("fence", "spatial", 1);
+  EXPECT_FALSE(test::same_bits(test::direct(fence.config, fence.frames).back(),
+                               test::direct(plain.config, plain.frames).back()));
+}
+
 class RenderedSession : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Threads, RenderedSession, ::testing::Values(1, 2));
 
@@ -36,18 +48,6 @@ TEST_P(RenderedSession, GivesTheBitsOfTheCoreCalledDirectlyUnderEveryRecipe) {
     test::expect_same(test::served(server, fence.config, fence.frames),
                       test::direct(fence.config, fence.frames));
   }
-}
-
-TEST_P(RenderedSession, HasInputOnWhichHistoryActs) {
-  const Rendered fence("fence", "reliable", 1);
-  const auto& planes = fence.config.planes;
-  for (const PlaneKind kind :
-       {PlaneKind::kBlockerDistance, PlaneKind::kBlockerId, PlaneKind::kLightSample})
-    EXPECT_NE(std::find(planes.begin(), planes.end(), PlaneId::of_light(kind, 0)), planes.end());
-  EXPECT_NE(fence.frames[0].lights.at(0), fence.frames[1].lights.at(0)) << "the light moves";
-  const Rendered plain("fence", "spatial", 1);
-  EXPECT_FALSE(test::same_bits(test::direct(fence.config, fence.frames).back(),
-                               test::direct(plain.config, plain.frames).back()));
 }
 
 TEST_P(RenderedSession, KeepsTwoSessionsThatStreamAtOnceApart) {

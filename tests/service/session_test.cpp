@@ -81,10 +81,13 @@ TEST(ClientSession, SubmitsNoMoreThanItsCreditsUntilAnAnswerComes) {
   const DenoiserConfig config = test::small_config(400, 300);
   Session session(session_options(server, config));
   EXPECT_EQ(session.credits(), 2);
+  std::vector<std::shared_ptr<const Frame>> frames;  // made first: making them takes longer
+  for (int i = 0; i < 8; ++i)
+    frames.push_back(std::make_shared<const Frame>(test::small_frame(config, i)));
   int refused = 0;
-  for (int i = 0; i < 20;) {
+  for (std::size_t i = 0; i < frames.size();) {
     ASSERT_LE(session.in_flight(), 2);
-    if (session.try_submit(std::make_shared<const Frame>(test::small_frame(config, i)))) {
+    if (session.try_submit(frames[i])) {
       ++i;
     } else {
       ++refused;
