@@ -193,7 +193,7 @@ const std::vector<std::string>& preset_names() {
 }
 
 std::vector<PlaneId> result_planes(const DenoiserConfig& config) {
-  std::vector<PlaneId> out;
+  std::vector<PlaneId> out{{PlaneKind::kComposite, {}}};
   for (const PlaneId id : config.planes) {
     if (id.kind != PlaneKind::kVisibility && id.kind != PlaneKind::kGlossy &&
         id.kind != PlaneKind::kIndirect)
@@ -208,7 +208,6 @@ std::vector<PlaneId> result_planes(const DenoiserConfig& config) {
          {PlaneKind::kDebugMotion, PlaneKind::kDebugHistory, PlaneKind::kDebugConfidence})
       out.push_back({kind, component});
   }
-  out.push_back({PlaneKind::kComposite, {}});
   return out;
 }
 

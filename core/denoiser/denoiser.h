@@ -78,7 +78,7 @@ class Denoiser {
 const std::vector<std::string>& recipe_names();
 /// Names of the presets, fastest first.
 const std::vector<std::string>& preset_names();
-/// Result planes of a configuration, in the order `Denoiser::filter` writes them.
+/// Result planes of a configuration: the composite, then each component's planes.
 std::vector<PlaneId> result_planes(const DenoiserConfig& config);
 
 }  // namespace holdfast

@@ -35,8 +35,9 @@ float noise_threshold(const HistorySources& sources, const ExpectedErrorRule& ru
     return rule.noise_threshold;
   const float dx = sources.shadow->motion[0].at(x, y) - sources.surface->motion[0].at(x, y);
   const float dy = sources.shadow->motion[1].at(x, y) - sources.surface->motion[1].at(x, y);
-  const float slide = std::min((std::abs(dx) + std::abs(dy)) / rule.slide_px, 1.0f);
-  return rule.rest_threshold + slide * (rule.noise_threshold - rule.rest_threshold);
+  const float slide_px = std::abs(dx) + std::abs(dy);
+  return rule.noise_threshold + rule.slow_threshold * std::exp(-slide_px / rule.slow_px) +
+         rule.rest_threshold * std::exp(-slide_px / rule.rest_px);
 }
 
 /// The candidates of a pixel: for one channel the surface's and the shadow's histories, for three

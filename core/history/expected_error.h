@@ -9,8 +9,10 @@ namespace holdfast {
 struct ExpectedErrorRule {
   int window_step = 2;          ///< window of the bias estimate: 3 + 2 step pixels wide
   float noise_threshold = 0.4f; ///< share of a window mean's variance that is not taken for bias
-  float rest_threshold = 25.0f;  ///< the same where a shadow does not slide over its surface
-  float slide_px = 0.25f;       ///< motion of the shadow over its surface that counts as sliding
+  float slow_threshold = 6.0f;  ///< added where a shadow slides slowly over its surface ...
+  float slow_px = 3.0f;         ///< ... falling by 1/e with this motion over the surface, pixels
+  float rest_threshold = 20.0f; ///< added where it does not slide at all ...
+  float rest_px = 0.05f;        ///< ... falling by 1/e with this motion (rounding, not sliding)
   float spatial_samples = 40;   ///< samples that the spatial filter adds: it averages noise, not bias
   float surface_advantage = 10; ///< the surface vector must promise this much less error to replace
                                 ///< the shadow vector: the smallest of two estimates flatters itself
@@ -35,8 +37,8 @@ struct BlendScratch {
 /// with n samples, sample variance v, and local mean difference d = mean(h - noisy) over a window of
 /// m samples:
 ///   u   = (v + v/n) / m                    variance of d
-///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls from rest_threshold
-///                                          to noise_threshold as a shadow slides over its surface
+///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls to noise_threshold
+///                                          the faster a shadow slides over its surface
 ///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 + (k/(1+k))^2/n'

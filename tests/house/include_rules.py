@@ -16,7 +16,7 @@ CORE_LAYERS = {
     "shading": {"frame", "kernels"},
     "motion": {"frame", "kernels"},
     "radiance": {"frame", "kernels"},
-    "history": {"frame", "kernels", "motion", "radiance"},
+    "history": {"frame", "kernels", "motion", "radiance", "spatial"},
     "spatial": {"frame", "kernels", "radiance"},
     "denoiser": {"frame", "kernels", "shading", "motion", "radiance", "history", "spatial"},
 }
