@@ -80,7 +80,7 @@ TEST_F(BadInput, KeysOfTheSequenceAreNamedWithRuleAndValue) {
       [](Json& j) {
         j["frames"][1]["camera"]["clipFromView"] = {1, 2};
       },
-      {"frames[1].camera.clipFromView", "16 numbers", "[1,2]"});
+      {"frames[1].camera.clipFromView", "16 finite numbers", "[1,2]"});
 }
 
 TEST_F(BadInput, ASingularCameraIsNamed) {
@@ -155,13 +155,13 @@ TEST_F(BadInput, RenderNamesWhatItCannotRender) {
     expect(2, more, parts);
   };
   render("castle", {}, {"castle", "fence, cylinder"});
-  render("fence", {"--size", "0x36"}, {"--size", "0x36"});
-  render("fence", {"--size", "64"}, {"--size", "64"});
+  render("fence", {"--size", "0x36"}, {"width", "1..16384", "is 0"});
+  render("fence", {"--size", "64"}, {"--size", "WIDTHxHEIGHT", "is 64"});
   render("fence", {"--frames", "0"}, {"--frames"});
-  render("fence", {"--spp", "0"}, {"spp", "0"});
+  render("fence", {"--spp", "0"}, {"samples per pixel", "1..1000000", "is 0"});
   render(path("no.json"), {}, {"no.json"});
-  std::ofstream(dir / "bad.json") << R"({"name": "x", "sun": 1})";
-  render(path("bad.json"), {}, {"bad.json", "sun"});
+  std::ofstream(dir / "bad.json") << R"({"format": "holdfast-scene", "version": 2})";
+  render(path("bad.json"), {}, {"bad.json", "version", "1", "is 2"});
 }
 
 TEST_F(BadInput, WrongArgumentsEndWithTwo) {
