@@ -17,9 +17,7 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  return "\"" + text.substr(0, 64) + "\"";
-}
+std::string quoted(const std::string& text) { return "\"" + text.substr(0, 64) + "\""; }
 
 /// `name` if it is one of `names`, `fallback` if it is empty.
 std::string checked_name(const char* subject, const std::string& name,
@@ -39,16 +37,11 @@ int checked_dimension(const char* subject, std::uint32_t value) {
 
 LightShape shape_from(const v1::Light& light) {
   switch (light.shape()) {
-    case v1::LIGHT_SHAPE_RECTANGLE:
-      return LightShape::kRectangle;
-    case v1::LIGHT_SHAPE_DISK:
-      return LightShape::kDisk;
-    case v1::LIGHT_SHAPE_SPHERE:
-      return LightShape::kSphere;
-    case v1::LIGHT_SHAPE_POINT:
-      return LightShape::kPoint;
-    case v1::LIGHT_SHAPE_DIRECTIONAL:
-      return LightShape::kDirectional;
+    case v1::LIGHT_SHAPE_RECTANGLE: return LightShape::kRectangle;
+    case v1::LIGHT_SHAPE_DISK: return LightShape::kDisk;
+    case v1::LIGHT_SHAPE_SPHERE: return LightShape::kSphere;
+    case v1::LIGHT_SHAPE_POINT: return LightShape::kPoint;
+    case v1::LIGHT_SHAPE_DIRECTIONAL: return LightShape::kDirectional;
     default:
       throw InputError("shape of light " + std::to_string(light.id()),
                        "must be set to a known shape",

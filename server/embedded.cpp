@@ -50,8 +50,6 @@ class EmbeddedServer::Impl {
 EmbeddedServer::EmbeddedServer(int threads, const std::string& log_level)
     : impl_(std::make_unique<Impl>(threads, log_level)) {}
 EmbeddedServer::~EmbeddedServer() = default;
-const std::string& EmbeddedServer::address() const {
-  return impl_->server.address();
-}
+const std::string& EmbeddedServer::address() const { return impl_->server.address(); }
 
 }  // namespace holdfast::server

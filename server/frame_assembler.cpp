@@ -14,9 +14,7 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
-std::string bytes_text(std::uint64_t bytes) {
-  return std::to_string(bytes) + " bytes";
-}
+std::string bytes_text(std::uint64_t bytes) { return std::to_string(bytes) + " bytes"; }
 
 }  // namespace
 

@@ -1,13 +1,13 @@
 #include "server/listen_address.h"
 
-#include <cerrno>
-#include <cstring>
-#include <memory>
-
 #include <netdb.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
 
 #include "core/frame/error.h"
 

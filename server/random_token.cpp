@@ -1,10 +1,10 @@
 #include "server/random_token.h"
 
+#include <sys/random.h>
+
 #include <cerrno>
 #include <system_error>
 #include <vector>
-
-#include <sys/random.h>
 
 namespace holdfast::server {
 

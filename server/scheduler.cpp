@@ -11,9 +11,7 @@ int thread_count(int threads) {
 
 /// A quarter of the threads lead: a frame alone then has most of the machine, and short frames of
 /// many sessions still run side by side. Ours.
-int leader_count(int threads) {
-  return std::max(1, threads / 4);
-}
+int leader_count(int threads) { return std::max(1, threads / 4); }
 
 }  // namespace
 

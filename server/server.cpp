@@ -131,11 +131,7 @@ class Server::Impl {
 
 Server::Server(const ServerConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 Server::~Server() = default;
-const std::string& Server::address() const {
-  return impl_->address();
-}
-void Server::drain(std::chrono::milliseconds deadline) {
-  impl_->drain(deadline);
-}
+const std::string& Server::address() const { return impl_->address(); }
+void Server::drain(std::chrono::milliseconds deadline) { impl_->drain(deadline); }
 
 }  // namespace holdfast::server

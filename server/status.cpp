@@ -18,16 +18,11 @@ v1::InputViolation violation_from(const InputError& error) {
 
 grpc::StatusCode code_of(Refusal reason) {
   switch (reason) {
-    case Refusal::kUnknownSession:
-      return grpc::StatusCode::NOT_FOUND;
-    case Refusal::kWrongToken:
-      return grpc::StatusCode::PERMISSION_DENIED;
-    case Refusal::kBusy:
-      return grpc::StatusCode::FAILED_PRECONDITION;
-    case Refusal::kLimit:
-      return grpc::StatusCode::RESOURCE_EXHAUSTED;
-    case Refusal::kDraining:
-      return grpc::StatusCode::UNAVAILABLE;
+    case Refusal::kUnknownSession: return grpc::StatusCode::NOT_FOUND;
+    case Refusal::kWrongToken: return grpc::StatusCode::PERMISSION_DENIED;
+    case Refusal::kBusy: return grpc::StatusCode::FAILED_PRECONDITION;
+    case Refusal::kLimit: return grpc::StatusCode::RESOURCE_EXHAUSTED;
+    case Refusal::kDraining: return grpc::StatusCode::UNAVAILABLE;
   }
   return grpc::StatusCode::INTERNAL;
 }

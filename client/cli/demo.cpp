@@ -1,10 +1,11 @@
 #include "client/cli/demo.h"
 
-#include <memory>
+#include <chrono>
 
 #include "client/cli/progress.h"
 #include "client/cli/render.h"
 #include "client/cli/replay.h"
+#include "client/measure/strip.h"
 
 namespace holdfast::cli {
 namespace {
@@ -48,30 +49,44 @@ std::vector<measure::Comparison> compare_recipes(const DemoOptions& options,
 std::string caption_of(const DemoOptions& options) {
   return std::to_string(options.frames) + " frames of " + std::to_string(options.width) + "x" +
          std::to_string(options.height) + ", one sample per pixel; references with " +
-         std::to_string(options.reference_spp) + ".";
+         std::to_string(options.reference_spp) + " samples.";
 }
 
 }  // namespace
 
-std::vector<measure::ReportScene> run_demo(const DemoOptions& options) {
-  std::vector<measure::ReportScene> scenes;
+DemoResult run_demo(const DemoOptions& options) {
+  DemoResult demo;
+  const auto timed = [&](const std::string& name, auto&& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    demo.steps.push_back({name, took.count()});
+  };
   for (const std::string& name : options.scenes) {
     const std::filesystem::path dir = options.out / name;
-    measure::ReportScene& scene =
-        scenes.emplace_back(measure::ReportScene{name, caption_of(options), dir / "sequence", {}});
-    render_scene(options, name, scene.sequence);
-    for (const std::string& recipe : options.recipes) {
-      replay_recipe(options, recipe, scene.sequence, dir / recipe);
-      scene.results.push_back({recipe, dir / recipe, {}});
-    }
-    auto comparisons = compare_recipes(options, scene);
-    for (std::size_t i = 0; i < comparisons.size(); ++i)
-      scene.results[i].comparison = std::move(comparisons[i]);
+    measure::ReportScene& scene = demo.scenes.emplace_back(
+        measure::ReportScene{name, caption_of(options), dir / "sequence", {}});
+    timed("render " + name, [&] { render_scene(options, name, scene.sequence); });
+    timed("replay " + name, [&] {
+      for (const std::string& recipe : options.recipes) {
+        replay_recipe(options, recipe, scene.sequence, dir / recipe);
+        scene.results.push_back({recipe, dir / recipe, {}});
+      }
+    });
+    timed("compare " + name, [&] {
+      auto comparisons = compare_recipes(options, scene);
+      for (std::size_t i = 0; i < comparisons.size(); ++i)
+        scene.results[i].comparison = std::move(comparisons[i]);
+    });
   }
-  measure::write_report(options.out / "report.html",
-                        "Holdfast: recipes on moving lights and shadows", scenes,
-                        options.out / "png");
-  return scenes;
+  timed("report", [&] {
+    measure::write_report(options.out / "report.html",
+                          "Holdfast: recipes on moving lights and shadows", demo.scenes,
+                          options.out / "png");
+    measure::write_png(options.out / "demo.png",
+                       measure::strip_of(demo.scenes.front(), {"svgf", "reliable"}));
+  });
+  return demo;
 }
 
 }  // namespace holdfast::cli

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -43,13 +42,11 @@ void add_demo(CLI::App& app) {
   command.callback([arguments] {
     DemoOptions& chosen = arguments->options;
     parse_image_size("option --size", arguments->size, chosen.width, chosen.height);
-    const auto start = std::chrono::steady_clock::now();
-    const auto scenes = run_demo(chosen);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (!arguments->json.empty()) write_json_file(arguments->json, demo_json(scenes));
+    const DemoResult result = run_demo(chosen);
+    if (!arguments->json.empty()) write_json_file(arguments->json, demo_json(result));
     if (chosen.quiet) return;
-    std::printf("%s%.0f s; report: %s\n", demo_table(scenes).c_str(), seconds.count(),
-                (chosen.out / "report.html").c_str());
+    std::printf("%s%sreport: %s\n", demo_table(result.scenes).c_str(),
+                demo_times(result.steps).c_str(), (chosen.out / "report.html").c_str());
   });
 }
 

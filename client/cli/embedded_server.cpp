@@ -13,8 +13,6 @@ class EmbeddedServer::Impl {
 
 EmbeddedServer::EmbeddedServer(int threads) : impl_(std::make_unique<Impl>(threads)) {}
 EmbeddedServer::~EmbeddedServer() = default;
-const std::string& EmbeddedServer::address() const {
-  return impl_->server.address();
-}
+const std::string& EmbeddedServer::address() const { return impl_->server.address(); }
 
 }  // namespace holdfast::cli

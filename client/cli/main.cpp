@@ -7,7 +7,7 @@ using namespace holdfast::cli;
 
 int main(int argc, char** argv) {
   CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // so that an unknown one is named; none is refused below
   app.set_version_flag("--version", "holdfast 0.1.0");
   add_compare(app);
   add_demo(app);
@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_replay(app);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
     return kDone;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;

@@ -18,7 +18,8 @@ Progress::~Progress() { finish(); }
 
 void Progress::update(std::int64_t done) {
   done_ = done;
-  const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+  const auto interval =
+      terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
   const auto now = Clock::now();
   if (silent_ || now - printed_ < interval) return;
   printed_ = now;

@@ -30,9 +30,7 @@ nlohmann::ordered_json layer_json(const Comparison::Layer& layer, Region region)
 
 }  // namespace
 
-const char* region_name(Region region) {
-  return region == Region::kImage ? "image" : "effect";
-}
+const char* region_name(Region region) { return region == Region::kImage ? "image" : "effect"; }
 
 const LayerErrors& errors_of(const Comparison::Layer& layer, Region region) {
   return region == Region::kImage ? layer.image : layer.effect;

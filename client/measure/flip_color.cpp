@@ -74,9 +74,7 @@ Color hunt_lab_from_linear_rgb(Color rgb) {
   return {lightness, 0.01f * lightness * 500 * (x - y), 0.01f * lightness * 200 * (y - z)};
 }
 
-float lightness_of_grey(float grey) {
-  return 116 * lab_curve(grey) - 16;
-}
+float lightness_of_grey(float grey) { return 116 * lab_curve(grey) - 16; }
 
 float hyab_distance(Color a, Color b) {
   return std::abs(a.x - b.x) + std::sqrt((a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));

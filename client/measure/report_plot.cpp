@@ -57,7 +57,8 @@ std::string grid(const Axes& axes) {
                   axes.y(error) + 4, error);
   const double frame_step =
       std::max(1.0, step_of(std::max(axes.frames.high - axes.frames.low, 1.0), 8));
-  for (double frame = axes.frames.low; frame <= axes.frames.high; frame += frame_step)
+  for (double frame = std::ceil(axes.frames.low / frame_step) * frame_step;
+       frame <= axes.frames.high; frame += frame_step)
     svg += format("<text x=\"%.1f\" y=\"%.0f\" text-anchor=\"middle\">%.0f</text>", axes.x(frame),
                   kHeight - kBottom + 16, frame);
   return svg + format("<text x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\">frame</text>",
@@ -93,20 +94,11 @@ std::string plot_svg(const std::string& title, const std::vector<PlotLine>& line
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
     }
   return out;
 }

@@ -65,7 +65,10 @@ std::string table_html(const ReportScene& scene, std::size_t layer) {
     html += "<tr><th><i class=\"key c" + std::to_string(line++) + "\"></i>" + escaped(result.name) +
             "</th>" + cells(scene, result, layer, Region::kImage) +
             cells(scene, result, layer, Region::kEffect) + "</tr>";
-  return html + "</tbody></table></div>";
+  html += "</tbody></table></div>";
+  if (scene.results.front().comparison.layers[layer].effect.judged_pixels == 0)
+    html += "<p class=\"note\">No pixel of this layer moves by more than the threshold.</p>";
+  return html;
 }
 
 }  // namespace holdfast::measure

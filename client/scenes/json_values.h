@@ -74,7 +74,7 @@ inline glm::dvec3 colour_or(StrictObject& in, const std::string& key, const glm:
     if (!(colour[c] >= 0.0 && colour[c] <= high))
       throw InputError(
           in.subject(key),
-          high == kNoLimit ? "must not be negative" : "must lie in 0.." + std::to_string(high),
+          high == kNoLimit ? "must not be negative" : "must lie in 0.." + json_excerpt(high),
           json_excerpt(*value));
   return colour;
 }

@@ -23,8 +23,7 @@ double projected_area(const LightState& state, const glm::dvec3& to_light, const
              std::max(0.0, -glm::dot(outwards, to_light));
     }
     case LightShape::kPoint:
-    case LightShape::kDirectional:
-      return 1.0;
+    case LightShape::kDirectional: return 1.0;
   }
   return 0.0;
 }

@@ -119,21 +119,11 @@ Mesh mesh_of_object(const Object& object) {
   for (const Part& part : object.parts) {
     Mesh mesh;
     switch (part.shape) {
-      case PartShape::kBox:
-        mesh = box_mesh(part.size_m);
-        break;
-      case PartShape::kSphere:
-        mesh = sphere_mesh(part.radius_m);
-        break;
-      case PartShape::kCylinder:
-        mesh = cylinder_mesh(part.radius_m, part.height_m);
-        break;
-      case PartShape::kQuad:
-        mesh = quad_mesh(part.size_m.x, part.size_m.z);
-        break;
-      case PartShape::kMesh:
-        mesh = read_obj(part.file);
-        break;
+      case PartShape::kBox: mesh = box_mesh(part.size_m); break;
+      case PartShape::kSphere: mesh = sphere_mesh(part.radius_m); break;
+      case PartShape::kCylinder: mesh = cylinder_mesh(part.radius_m, part.height_m); break;
+      case PartShape::kQuad: mesh = quad_mesh(part.size_m.x, part.size_m.z); break;
+      case PartShape::kMesh: mesh = read_obj(part.file); break;
     }
     mesh.transform(part.placement.matrix());
     all.append(mesh);

@@ -96,8 +96,6 @@ class ObjReader {
 
 }  // namespace
 
-Mesh read_obj(const std::filesystem::path& file) {
-  return ObjReader(file).read();
-}
+Mesh read_obj(const std::filesystem::path& file) { return ObjReader(file).read(); }
 
 }  // namespace holdfast::scenes

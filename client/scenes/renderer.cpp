@@ -1,5 +1,6 @@
 #include "client/scenes/renderer.h"
 
+#include <cstdio>
 #include <set>
 
 #include "client/scenes/noisy_frame.h"
@@ -10,10 +11,15 @@
 namespace holdfast::scenes {
 namespace {
 
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", value);
+  return text;
+}
+
 void check_range(const std::string& name, double value, double low, double high) {
   if (!(value >= low && value <= high))
-    throw InputError(name, "must lie in " + std::to_string(low) + ".." + std::to_string(high),
-                     std::to_string(value));
+    throw InputError(name, "must lie in " + text_of(low) + ".." + text_of(high), text_of(value));
 }
 
 Scene checked(Scene scene, const RenderSettings& settings) {

@@ -9,9 +9,7 @@
 namespace holdfast::scenes {
 
 /// Rec. 709 luminance of a linear colour.
-inline double luminance(const glm::dvec3& c) {
-  return glm::dot(c, {0.2126, 0.7152, 0.0722});
-}
+inline double luminance(const glm::dvec3& c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); }
 
 /// A rotation whose third column is the unit vector `n` (Duff et al., JCGT 2017).
 inline glm::dmat3 frame_around(const glm::dvec3& n) {

@@ -7,9 +7,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const glm::dvec3& v) {
-  return Json::array({v.x, v.y, v.z});
-}
+Json vector_json(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 void put_transform(Json& out, const Transform& t) {
   const Transform identity;
@@ -21,12 +19,9 @@ void put_transform(Json& out, const Transform& t) {
 
 const char* repeat_name(Repeat repeat) {
   switch (repeat) {
-    case Repeat::kHold:
-      return "hold";
-    case Repeat::kLoop:
-      return "loop";
-    case Repeat::kMirror:
-      return "mirror";
+    case Repeat::kHold: return "hold";
+    case Repeat::kLoop: return "loop";
+    case Repeat::kMirror: return "mirror";
   }
   return "";
 }
@@ -49,21 +44,15 @@ Json motion_json(const Motion& motion) {
 Json part_json(const Part& part) {
   Json out;
   switch (part.shape) {
-    case PartShape::kBox:
-      out = {{"shape", "box"}, {"size", vector_json(part.size_m)}};
-      break;
+    case PartShape::kBox: out = {{"shape", "box"}, {"size", vector_json(part.size_m)}}; break;
     case PartShape::kQuad:
       out = {{"shape", "quad"}, {"size", Json::array({part.size_m.x, part.size_m.z})}};
       break;
-    case PartShape::kSphere:
-      out = {{"shape", "sphere"}, {"radius", part.radius_m}};
-      break;
+    case PartShape::kSphere: out = {{"shape", "sphere"}, {"radius", part.radius_m}}; break;
     case PartShape::kCylinder:
       out = {{"shape", "cylinder"}, {"radius", part.radius_m}, {"height", part.height_m}};
       break;
-    case PartShape::kMesh:
-      out = {{"shape", "mesh"}, {"file", part.file.string()}};
-      break;
+    case PartShape::kMesh: out = {{"shape", "mesh"}, {"file", part.file.string()}}; break;
   }
   put_transform(out, part.placement);
   return out;

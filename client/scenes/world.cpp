@@ -20,9 +20,7 @@ struct ReleaseScene {
 using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using RayScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
-float ray_end(double max_m) {
-  return static_cast<float>(std::min(max_m, 1e30));
-}
+float ray_end(double max_m) { return static_cast<float>(std::min(max_m, 1e30)); }
 
 /// A geometry with the mesh's triangles and room for its vertices.
 RTCGeometry make_geometry(RTCDevice device, const Mesh& mesh) {
@@ -187,9 +185,7 @@ unsigned World::occluded(const glm::dvec3& origin, const RayBatch& rays) const {
   return blocked;
 }
 
-const Mesh& World::mesh(std::size_t object) const {
-  return state_->instances[object].mesh;
-}
+const Mesh& World::mesh(std::size_t object) const { return state_->instances[object].mesh; }
 
 const glm::dmat4& World::world_from_object(std::size_t object) const {
   return state_->instances[object].world_from_object;

@@ -11,6 +11,7 @@ using Clock = std::chrono::steady_clock;
 Connection::Connection(v1::DenoiseService::Stub& stub, Config config, const v1::Hello& hello,
                        std::chrono::milliseconds timeout)
     : config_(std::move(config)), assembler_(config_.results, config_.width, config_.height) {
+  std::unique_lock lock(mutex_);  // reactions see a finished object, and wait for it here
   stub.async()->Denoise(&context_, this);
   *request_.mutable_hello() = hello;
   writing_ = true;
@@ -18,7 +19,6 @@ Connection::Connection(v1::DenoiseService::Stub& stub, Config config, const v1::
   StartWrite(&request_);
   StartRead(&response_);
   StartCall();
-  std::unique_lock lock(mutex_);
   const bool answered = changed_.wait_for(lock, timeout, [this] { return welcome_ || ended_; });
   if (answered && welcome_) return;
   context_.TryCancel();

@@ -10,16 +10,11 @@ namespace {
 
 v1::LightShape shape_of(LightShape shape) {
   switch (shape) {
-    case LightShape::kRectangle:
-      return v1::LIGHT_SHAPE_RECTANGLE;
-    case LightShape::kDisk:
-      return v1::LIGHT_SHAPE_DISK;
-    case LightShape::kSphere:
-      return v1::LIGHT_SHAPE_SPHERE;
-    case LightShape::kPoint:
-      return v1::LIGHT_SHAPE_POINT;
-    case LightShape::kDirectional:
-      return v1::LIGHT_SHAPE_DIRECTIONAL;
+    case LightShape::kRectangle: return v1::LIGHT_SHAPE_RECTANGLE;
+    case LightShape::kDisk: return v1::LIGHT_SHAPE_DISK;
+    case LightShape::kSphere: return v1::LIGHT_SHAPE_SPHERE;
+    case LightShape::kPoint: return v1::LIGHT_SHAPE_POINT;
+    case LightShape::kDirectional: return v1::LIGHT_SHAPE_DIRECTIONAL;
   }
   return v1::LIGHT_SHAPE_UNSPECIFIED;
 }

@@ -119,44 +119,20 @@ Session& Session::operator=(Session&&) noexcept = default;
 void Session::submit(std::shared_ptr<const Frame> frame) {
   impl_->connection().submit(std::move(frame), true);
 }
-void Session::submit(Frame&& frame) {
-  submit(std::make_shared<const Frame>(std::move(frame)));
-}
+void Session::submit(Frame&& frame) { submit(std::make_shared<const Frame>(std::move(frame))); }
 bool Session::try_submit(std::shared_ptr<const Frame> frame) {
   return impl_->connection().submit(std::move(frame), false);
 }
-std::optional<FrameOutput> Session::receive() {
-  return impl_->connection().receive(true);
-}
-std::optional<FrameOutput> Session::try_receive() {
-  return impl_->connection().receive(false);
-}
-void Session::finish() {
-  impl_->connection().finish();
-}
-void Session::close() {
-  impl_->close();
-}
-void Session::recycle(PlaneSet&& planes) {
-  impl_->connection().recycle(std::move(planes));
-}
-int Session::credits() const {
-  return impl_->connection().credits();
-}
-int Session::in_flight() const {
-  return impl_->connection().in_flight();
-}
-const std::vector<PlaneId>& Session::results() const {
-  return impl_->results();
-}
-const std::string& Session::recipe() const {
-  return impl_->session().recipe();
-}
-const std::string& Session::preset() const {
-  return impl_->session().preset();
-}
-Traffic Session::traffic() const {
-  return impl_->connection().traffic();
-}
+std::optional<FrameOutput> Session::receive() { return impl_->connection().receive(true); }
+std::optional<FrameOutput> Session::try_receive() { return impl_->connection().receive(false); }
+void Session::finish() { impl_->connection().finish(); }
+void Session::close() { impl_->close(); }
+void Session::recycle(PlaneSet&& planes) { impl_->connection().recycle(std::move(planes)); }
+int Session::credits() const { return impl_->connection().credits(); }
+int Session::in_flight() const { return impl_->connection().in_flight(); }
+const std::vector<PlaneId>& Session::results() const { return impl_->results(); }
+const std::string& Session::recipe() const { return impl_->session().recipe(); }
+const std::string& Session::preset() const { return impl_->session().preset(); }
+Traffic Session::traffic() const { return impl_->connection().traffic(); }
 
 }  // namespace holdfast::client

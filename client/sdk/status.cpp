@@ -23,8 +23,7 @@ void throw_status(const std::string& address, const grpc::Status& status) {
                             " was closed: " + status.error_message());
     case grpc::StatusCode::DEADLINE_EXCEEDED:
       throw ConnectionError(server + " did not answer in time");
-    default:
-      throw RefusedError(server + " refuses: " + status.error_message());
+    default: throw RefusedError(server + " refuses: " + status.error_message());
   }
 }
 

@@ -20,9 +20,7 @@ struct FileChannel {
   std::size_t offset_bytes;
 };
 
-std::string file_subject(const std::filesystem::path& file) {
-  return "file " + file.string();
-}
+std::string file_subject(const std::filesystem::path& file) { return "file " + file.string(); }
 
 std::string size_text(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);

@@ -25,9 +25,7 @@ Frame without_planes(const Frame& frame) {
   return out;
 }
 
-std::string frame_subject(std::int64_t index) {
-  return "frame " + std::to_string(index);
-}
+std::string frame_subject(std::int64_t index) { return "frame " + std::to_string(index); }
 
 bool is_finite(const glm::dmat4& matrix) {
   for (int c = 0; c < 4; ++c)
@@ -89,12 +87,9 @@ bool may_hold(FileKind file, PlaneKind plane) {
   const bool both = plane == PlaneKind::kVisibility || plane == PlaneKind::kGlossy ||
                     plane == PlaneKind::kIndirect;
   switch (file) {
-    case FileKind::kFrame:
-      return !result_only && plane != PlaneKind::kGradient;
-    case FileKind::kReference:
-      return result_only || both;
-    case FileKind::kGradient:
-      return plane == PlaneKind::kGradient;
+    case FileKind::kFrame: return !result_only && plane != PlaneKind::kGradient;
+    case FileKind::kReference: return result_only || both;
+    case FileKind::kGradient: return plane == PlaneKind::kGradient;
   }
   return false;
 }
@@ -144,9 +139,7 @@ void SequenceWriter::write_gradient(std::int64_t index, const PlaneSet& planes) 
   write_exr(sequence_file(dir_, "gradient", index), planes, options_);
 }
 
-void SequenceWriter::finish() {
-  write_sequence_json(dir_ / kJsonName, header_, frames_);
-}
+void SequenceWriter::finish() { write_sequence_json(dir_ / kJsonName, header_, frames_); }
 
 SequenceReader::SequenceReader(fs::path dir) : dir_(std::move(dir)) {
   if (!fs::is_directory(dir_))

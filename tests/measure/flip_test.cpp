@@ -27,9 +27,7 @@ std::vector<float> flip(const Image& reference, const Image& test) {
   return FlipReference(reference, test::all(reference)).map(test);
 }
 
-double value(float x) {
-  return static_cast<double>(x);
-}
+double value(float x) { return static_cast<double>(x); }
 
 TEST(Flip, IdenticalImagesDifferByNothing) {
   const Image grey = test::Noise(1).image(17, 24, 1), rgb = test::Noise(2).image(17, 24, 3);

@@ -13,9 +13,7 @@ namespace {
 
 const PlaneId kVisibility = PlaneId::of_light(PlaneKind::kVisibility, 0);
 
-std::string base64_of(std::string_view text) {
-  return base64({text.begin(), text.end()});
-}
+std::string base64_of(std::string_view text) { return base64({text.begin(), text.end()}); }
 
 TEST(Picture, Base64FollowsTheVectorsOfItsStandard) {  // RFC 4648, section 10
   EXPECT_EQ(base64_of(""), "");

@@ -101,9 +101,7 @@ TEST(Plot, PutsTheLargestErrorAtTheTopTick) {
   EXPECT_NE(svg.find("<title>two &amp; three</title>"), svg.npos);
 }
 
-TEST(Plot, IsEmptyWithoutAnyPoint) {
-  EXPECT_EQ(plot_svg("RMSE", {{"one", {}}}), "");
-}
+TEST(Plot, IsEmptyWithoutAnyPoint) { EXPECT_EQ(plot_svg("RMSE", {{"one", {}}}), ""); }
 
 TEST(Plot, FlatZeroErrorIsDrawnAtTheBottom) {
   const std::string svg = plot_svg("RMSE", {{"one", {{3, 0.0}, {4, 0.0}}}});

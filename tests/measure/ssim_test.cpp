@@ -7,9 +7,7 @@
 namespace holdfast::measure {
 namespace {
 
-double value(float x) {
-  return static_cast<double>(x);
-}
+double value(float x) { return static_cast<double>(x); }
 
 TEST(Ssim, IdenticalImagesScoreOne) {
   const Image image = test::Noise(5).image(33, 12, 3);

@@ -17,9 +17,7 @@ inline Image constant(int width, int height, std::initializer_list<float> color)
   return image;
 }
 
-inline Mask all(const Image& image) {
-  return Mask(image.pixels(), 1);
-}
+inline Mask all(const Image& image) { return Mask(image.pixels(), 1); }
 
 /// Uniform numbers in [0,1) that a script in another language makes as well: a 32-bit linear
 /// congruential generator (Numerical Recipes), its top 24 bits.

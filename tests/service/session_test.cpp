@@ -1,71 +1,22 @@
 #include <thread>
 
-#include <gtest/gtest.h>
-#include <holdfast/client.h>
-
-#include "server/server.h"
-#include "tests/service/test_frames.h"
+#include "tests/service/served.h"
 
 namespace holdfast {
 namespace {
 
-using client::FrameOutput;
 using client::Session;
 using client::SessionOptions;
+using test::direct;
+using test::expect_same;
+using test::served;
+using test::server_config;
+using test::session_options;
 
-server::ServerConfig server_config(int threads, int credits = 3) {
-  server::ServerConfig config;
-  config.listen = "127.0.0.1:0";
-  config.threads = threads;
-  config.limits.credits = credits;
-  config.log_level = "off";
-  return config;
-}
-
-SessionOptions session_options(const server::Server& server, const DenoiserConfig& config) {
-  SessionOptions options;
-  options.address = server.address();
-  options.width = config.width;
-  options.height = config.height;
-  options.lights = config.lights;
-  options.planes = config.planes;
-  options.recipe = config.recipe;
-  options.preset = config.preset;
-  options.seed = config.seed;
-  return options;
-}
-
-/// The results of frames 0..frames-1 from the core called directly.
-std::vector<PlaneSet> direct(const DenoiserConfig& config, int frames, std::uint32_t seed) {
-  Denoiser denoiser(config);
-  std::vector<PlaneSet> results(static_cast<std::size_t>(frames));
-  for (int i = 0; i < frames; ++i)
-    denoiser.filter(test::small_frame(config, i, seed), results[static_cast<std::size_t>(i)]);
-  return results;
-}
-
-/// The same through a server, as fast as credits allow.
-std::vector<PlaneSet> served(const server::Server& server, const DenoiserConfig& config, int frames,
-                             std::uint32_t seed) {
-  Session session(session_options(server, config));
-  std::thread submitter([&] {
-    for (int i = 0; i < frames; ++i) session.submit(test::small_frame(config, i, seed));
-    session.finish();
-  });
-  std::vector<PlaneSet> results;
-  while (auto output = session.receive()) {
-    EXPECT_FALSE(output->error) << output->error->message;
-    results.push_back(std::move(output->planes));
-  }
-  submitter.join();
-  session.close();
-  return results;
-}
-
-void expect_same(const std::vector<PlaneSet>& a, const std::vector<PlaneSet>& b) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i)
-    EXPECT_TRUE(test::same_bits(a[i], b[i])) << "frame " << i;
+std::vector<Frame> small_frames(const DenoiserConfig& config, int count, std::uint32_t seed) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(test::small_frame(config, i, seed));
+  return frames;
 }
 
 class Service : public ::testing::TestWithParam<int> {};
@@ -74,24 +25,27 @@ INSTANTIATE_TEST_SUITE_P(Threads, Service, ::testing::Values(1, 2));
 TEST_P(Service, GivesTheBitsOfTheCoreCalledDirectly) {
   const server::Server server(server_config(GetParam()));
   const DenoiserConfig config = test::small_config();
-  expect_same(served(server, config, 6, 1), direct(config, 6, 1));
+  const std::vector<Frame> frames = small_frames(config, 6, 1);
+  expect_same(served(server, config, frames), direct(config, frames));
 }
 
 TEST_P(Service, CarriesPlanesLargerThanAChunk) {
   const server::Server server(server_config(GetParam()));
   const DenoiserConfig config = test::small_config(641, 480);  // 1.2 MB a channel
-  expect_same(served(server, config, 2, 1), direct(config, 2, 1));
+  const std::vector<Frame> frames = small_frames(config, 2, 1);
+  expect_same(served(server, config, frames), direct(config, frames));
 }
 
 TEST_P(Service, KeepsTwoSessionsThatStreamAtOnceApart) {
   const server::Server server(server_config(GetParam()));
   const DenoiserConfig a = test::small_config(), b = test::small_config(64, 48);
+  const std::vector<Frame> frames_a = small_frames(a, 12, 1), frames_b = small_frames(b, 12, 2);
   std::vector<PlaneSet> results_a;
-  std::thread other([&] { results_a = served(server, a, 12, 1); });
-  const std::vector<PlaneSet> results_b = served(server, b, 12, 2);
+  std::thread other([&] { results_a = served(server, a, frames_a); });
+  const std::vector<PlaneSet> results_b = served(server, b, frames_b);
   other.join();
-  expect_same(results_a, direct(a, 12, 1));
-  expect_same(results_b, direct(b, 12, 2));
+  expect_same(results_a, direct(a, frames_a));
+  expect_same(results_b, direct(b, frames_b));
 }
 
 TEST(ClientSession, ReportsTimesAndTrafficOfAFrame) {
@@ -127,10 +81,13 @@ TEST(ClientSession, SubmitsNoMoreThanItsCreditsUntilAnAnswerComes) {
   const DenoiserConfig config = test::small_config(400, 300);
   Session session(session_options(server, config));
   EXPECT_EQ(session.credits(), 2);
+  std::vector<std::shared_ptr<const Frame>> frames;  // made first: making them takes longer
+  for (int i = 0; i < 8; ++i)
+    frames.push_back(std::make_shared<const Frame>(test::small_frame(config, i)));
   int refused = 0;
-  for (int i = 0; i < 20;) {
+  for (std::size_t i = 0; i < frames.size();) {
     ASSERT_LE(session.in_flight(), 2);
-    if (session.try_submit(std::make_shared<const Frame>(test::small_frame(config, i)))) {
+    if (session.try_submit(frames[i])) {
       ++i;
     } else {
       ++refused;
@@ -185,7 +142,7 @@ TEST(ClientSession, GetsAnErrorForAnIndexThatGoesBackAndKeepsItsHistory) {
       EXPECT_EQ(output->error->input->value(), std::to_string(index));
     }
   }
-  expect_same(results, direct(config, 3, 1));
+  expect_same(results, direct(config, small_frames(config, 3, 1)));
 }
 
 TEST(ClientSession, NamesTheOptionThatTheServerRefuses) {

@@ -4,13 +4,14 @@
 //
 //   transport_cost [WIDTH HEIGHT FRAMES [unix | tcp]]
 
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include <holdfast/client.h>
-#include <sys/resource.h>
 
 #include "server/embedded.h"
 #include "server/server.h"
