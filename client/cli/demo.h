@@ -18,7 +18,7 @@ struct DemoOptions {
   std::vector<std::string> recipes{"spatial", "traditional", "clamp", "svgf", "paper", "reliable"};
   std::int64_t frames = 24;
   int width = 480, height = 270;  ///< pixels
-  int reference_spp = 1296;       ///< samples per pixel of references
+  int reference_spp = 1600;       ///< samples per pixel of references
   std::uint64_t seed = 1;
   double speed = 1;  ///< of all animation
   bool flip = true;  ///< judge by FLIP, too

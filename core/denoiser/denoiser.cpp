@@ -58,6 +58,7 @@ class Denoiser::Impl {
         plan(Plan::make(c)),
         scratch(c.width, c.height, plan.any_radiance, plan.any_shadow,
                 plan.recipe.vectors == HistoryVectors::kCandidates, c.debug_planes) {
+    announced = result_planes(c);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) g = Guides(c.width, c.height);
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
@@ -88,6 +89,7 @@ class Denoiser::Impl {
       trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
       timer.end("surface");
     }
+    for (const PlaneId id : announced) results.add(id, config.width, config.height);
     for (std::size_t k = 0; k < filters.size(); ++k) {
       run_component(frame, frames, plan.components[k], filters[k], results, report);
       timer.end(component_name(filters[k].component()));
@@ -153,7 +155,8 @@ class Denoiser::Impl {
   SurfaceHistory surface;
   SceneMotion scene;
   std::vector<ComponentFilter> filters;
-  std::vector<PlaneId> signals;  ///< the planes of `filters`
+  std::vector<PlaneId> signals;    ///< the planes of `filters`
+  std::vector<PlaneId> announced;  ///< all result planes, in order
   std::int64_t last_index = std::numeric_limits<std::int64_t>::min();
   bool has_past = false;
 };

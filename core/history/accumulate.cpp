@@ -17,8 +17,10 @@ Colour ycocg_from_rgb(const Colour& c) {
           -0.25f * c[0] + 0.5f * c[1] - 0.25f * c[2]};
 }
 
+/// Clamping each axis on its own may leave the colours that exist; those are brought back to 0.
 Colour rgb_from_ycocg(const Colour& c) {
-  return {c[0] + c[1] - c[2], c[0] + c[2], c[0] - c[1] - c[2]};
+  return {std::max(c[0] + c[1] - c[2], 0.0f), std::max(c[0] + c[2], 0.0f),
+          std::max(c[0] - c[1] - c[2], 0.0f)};
 }
 
 /// Reads a pixel in the space in which it is clamped.

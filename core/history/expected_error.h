@@ -43,7 +43,8 @@ struct BlendScratch {
 ///   u   = (v + v/n) / m                    variance of d
 ///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls to noise_threshold
 ///                                          the faster a shadow slides over its surface
-///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d
+///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d,
+///                                          kept >= 0 and, for a visibility, <= max(h, 1)
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 +
 /// (k/(1+k))^2/n' with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial

@@ -63,7 +63,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
       const float mean = s.guide[0].at(x, y);
       const float sd = std::sqrt(signal.sample_variance.at(x, y) / s.spread[0].at(x, y));
       // The second term keeps rounding of a noise-free signal from counting as an edge.
-      s.guide[1].at(x, y) = 1.0f / (luminance_sigma * sd + 1e-3f * mean + 1e-12f);
+      s.guide[1].at(x, y) = 1.0f / (luminance_sigma * sd + 1e-3f * std::abs(mean) + 1e-12f);
     }
   });
 }

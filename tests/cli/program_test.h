@@ -9,6 +9,11 @@
 #include "tests/cli/run_program.h"
 #include "tests/sequence/temp_dir.h"
 
+// The build names the program under test; by hand, it is the one on the PATH.
+#ifndef HOLDFAST_PROGRAM
+#define HOLDFAST_PROGRAM "holdfast"
+#endif
+
 namespace holdfast::test {
 
 /// Runs `holdfast` as a user does, in a folder of its own.

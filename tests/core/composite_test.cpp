@@ -1,5 +1,7 @@
 #include "core/denoiser/composite.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/core/denoiser_world.h"
@@ -18,7 +20,10 @@ struct Composite {
     for (int c = 0; c < plane.channels(); ++c) test::fill(plane.channel(c), value[c]);
   }
   glm::vec3 at(int x) {
-    EXPECT_EQ(compose(guides, input, results), 0u);
+    std::vector<PlaneId> signals;
+    for (const Plane& plane : results)
+      if (plane.id() != test::kCompositePlane) signals.push_back(plane.id());
+    EXPECT_EQ(compose(guides, signals, input, results), 0u);
     const Plane& out = results.at(test::kCompositePlane);
     return {out.channel(0).at(x, 0), out.channel(1).at(x, 0), out.channel(2).at(x, 0)};
   }

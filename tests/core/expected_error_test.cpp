@@ -177,7 +177,7 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForColours) {
       const Promise p = promise_of(n, v, d, inverse_m[at], 2.0, rule);
       const double k = std::min(v / p.error, 63.0);
       for (int c = 0; c < 3; ++c) {
-        const double h = double(b.before.data[c].at(x, y)) - p.share * mean[c][at];
+        const double h = std::max(double(b.before.data[c].at(x, y)) - p.share * mean[c][at], 0.0);
         const double want = (double(b.noisy[c].at(x, y)) + k * h) / (1 + k);
         ASSERT_NEAR(b.now.data[c].at(x, y), want, kTolerance) << x << ", " << y;
       }
@@ -225,10 +225,10 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
       const auto at = static_cast<std::size_t>(y * kWidth + x);
       double threshold = rule.noise_threshold;
       if (samples[1][at] > 0) {
-        const double slide = std::min(1.0, (std::abs(double(b.shadow.motion[0].at(x, y))) +
-                                            std::abs(double(b.shadow.motion[1].at(x, y)))) /
-                                               double(rule.slide_px));
-        threshold = double(rule.rest_threshold) * (1 - slide) + threshold * slide;
+        const double slide_px = std::abs(double(b.shadow.motion[0].at(x, y))) +
+                                std::abs(double(b.shadow.motion[1].at(x, y)));
+        threshold += double(rule.slow_threshold) * std::exp(-slide_px / double(rule.slow_px)) +
+                     double(rule.rest_threshold) * std::exp(-slide_px / double(rule.rest_px));
       }
       const double v = b.variance[0].at(x, y);
       Promise p[2] = {};
@@ -245,7 +245,9 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
       if (take >= 0) {
         const Promise& chosen = p[take];
         const double k = std::min(v / chosen.error, 63.0);
-        want = (want + k * (value[take][at] - chosen.share * mean[take][at])) / (1 + k);
+        const double corrected = std::clamp(value[take][at] - chosen.share * mean[take][at], 0.0,
+                                            std::max(value[take][at], 1.0));
+        want = (want + k * corrected) / (1 + k);
       }
       by_shadow += take == 1 ? 1 : 0;
       by_none += take < 0 ? 1 : 0;
@@ -265,7 +267,7 @@ TEST(ExpectedError, ShadowAtRestKeepsAHistoryThatASlidingOneRejects) {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         b.follow_shadow(x, y, x, y);
-        if (sliding) b.shadow.motion[0].at(x, y) = 2.0f;
+        if (sliding) b.shadow.motion[0].at(x, y) = 20.0f;
       }
     Channels<float> debug(kWidth, kHeight, kDebugChannels);
     b.run(b.by_shadow(), {}, &debug);
