@@ -148,7 +148,7 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   ChannelView<const float> differences[3];
   for (int c = 0; c < count; ++c) differences[c] = std::as_const(s.differences)[c];
   s.activity.measure(guides, {differences, static_cast<std::size_t>(count)}, 1 + rule.window_step,
-                     0.0f);
+                     0.0f, true);
   const auto spread =
       window_means(guides, s.differences, count, rule.window_step, window, s.bias, &s.activity);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};

@@ -20,7 +20,7 @@ ActivityMap::ActivityMap(int width, int height)
 }
 
 void ActivityMap::measure(const Guides& guides, std::span<const ChannelView<const float>> signals,
-                          int halo, float tolerance) {
+                          int halo, float tolerance, bool around_zero) {
   const int reach_x = tiles(halo, kTileWidth), reach_y = tiles(halo, kTileHeight);
   std::fill(active_.begin(), active_.end(), std::uint8_t{0});
   const auto tile_rows = [&](const auto& body) {
@@ -29,7 +29,7 @@ void ActivityMap::measure(const Guides& guides, std::span<const ChannelView<cons
   for (const ChannelView<const float>& signal : signals) {
     tile_rows([&](int row) {
       for (int column = 0; column < columns_; ++column) {
-        float low = kInfinity, high = -kInfinity;
+        float low = around_zero ? 0.0f : kInfinity, high = around_zero ? 0.0f : -kInfinity;
         const int last_x = std::min((column + 1) * kTileWidth, signal.width);
         const int last_y = std::min((row + 1) * kTileHeight, signal.height);
         for (int y = row * kTileHeight; y < last_y; ++y) {

@@ -21,8 +21,9 @@ class ActivityMap {
 
   /// Marks the tiles for filters of up to `halo` pixels: active where a signal's values on surfaces
   /// differ by more than `tolerance` within the tile and the tiles around it that the halo reaches.
+  /// With `around_zero`, a tile whose signals are constant but not 0 is active, too.
   void measure(const Guides& guides, std::span<const ChannelView<const float>> signals, int halo,
-               float tolerance);
+               float tolerance, bool around_zero = false);
 
   bool active(int x, int y) const {
     return active_[static_cast<std::size_t>(y / kTileHeight * columns_ + x / kTileWidth)] != 0;
