@@ -30,6 +30,12 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
+/// Whether frame `i` of the sequence gets a reference.
+bool wants_reference(const RenderOptions& options, std::int64_t i) {
+  const std::int64_t every = options.reference_every, place = i % every;
+  return options.reference_pairs ? place >= every - 2 : place == 0;
+}
+
 }  // namespace
 
 RenderResult render_sequence(const RenderOptions& options) {
@@ -51,7 +57,7 @@ RenderResult render_sequence(const RenderOptions& options) {
     result.noisy_s += watch.lap();
     writer.write_frame(frame);
     result.write_s += watch.lap();
-    if (has_references && i % options.reference_every == 0) {
+    if (has_references && wants_reference(options, i)) {
       const PlaneSet& reference = renderer.reference(index);
       result.reference_s += watch.lap();
       writer.write_reference(index, reference);

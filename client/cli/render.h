@@ -14,7 +14,8 @@ struct RenderOptions {
   std::filesystem::path out;       ///< folder of the sequence
   std::filesystem::path describe;  ///< also write the scene as JSON to this file; empty = do not
   std::int64_t frames = 24;
-  std::int64_t reference_every = 1;  ///< a reference for every k-th frame
+  std::int64_t reference_every = 1;  ///< a reference for every k-th frame ...
+  bool reference_pairs = false;      ///< ... or for the last two of every k
   scenes::RenderSettings settings;   ///< reference_spp = 0: no references
   bool quiet = false;                ///< no progress
 };

@@ -57,6 +57,9 @@ void add_render(CLI::App& app) {
                    "Render a reference for every K-th frame only")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_flag("--reference-pairs", options.reference_pairs,
+                    "References for the last two of every K frames instead: change from frame to "
+                    "frame can be judged at a fraction of the cost");
   command->add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--first", settings.first_frame, "Index of the first frame")
       ->check(CLI::NonNegativeNumber)
