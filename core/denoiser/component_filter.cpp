@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/history/dual_history.h"
+#include "core/history/shadow_history.h"
 #include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
 #include "core/spatial/svgf_filter.h"
@@ -17,7 +19,7 @@ constexpr int kLuminance = 0;
 constexpr int kSquare = 1;
 constexpr int kSampleVariance = kSquare;  // of the means, once they are final
 constexpr int kField = 2;                 // the channels of a shadow field
-constexpr int kMeasured = kField + int{kShadowFieldChannels};
+constexpr int kMeasured = kField + int{kEffectFieldChannels};
 
 constexpr int kStatisticsStep = 3;  // 9x9 window, tiled exactly
 
@@ -30,36 +32,42 @@ constexpr float kVarianceFloor = 1e-20f;
 
 }  // namespace
 
-Scratch::Scratch(int width, int height, bool any_radiance, bool any_shadow, bool with_blend,
-                 bool with_debug)
-    : noisy(width, height, any_radiance ? 3 : 1),
-      measured(width, height, any_shadow ? kMeasured : kField),
-      means(width, height, any_shadow ? kMeasured : kField),
+Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
+    : noisy(width, height, plan.any_radiance ? 3 : 1),
+      measured(width, height, plan.any_footprint ? kMeasured : kField),
+      means(width, height, plan.any_footprint ? kMeasured : kField),
       measured_activity(width, height),
       window(width, height),
       filter(width, height) {
-  if (any_shadow) {
-    footprint = Channels<float>(width, height, 3);
-    shadow = ShadowHistory(width, height);
+  if (plan.any_footprint) footprint = Channels<float>(width, height, 3);
+  if (plan.any_effect) effect = EffectHistory(width, height);
+  if (plan.recipe.blending == Blending::kExpectedError) {
+    blend = BlendScratch(width, height);
+    if (plan.any_radiance) radiance_blend = RadianceBlendScratch(width, height, 2);
   }
-  if (with_blend) blend = BlendScratch(width, height);
   if (with_debug) debug = Channels<float>(width, height, kDebugChannels);
 }
 
 std::size_t Scratch::bytes() const {
-  return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() +
-         shadow.taps.bytes() + shadow.motion.bytes() + window.between.bytes() +
-         window.spread.bytes() + blend.bytes() + filter.bytes() + debug.bytes();
+  return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() + effect.bytes() +
+         window.between.bytes() + window.spread.bytes() + blend.bytes() + radiance_blend.bytes() +
+         filter.bytes() + debug.bytes();
 }
 
-ComponentFilter::ComponentFilter(Component component, const Recipe& recipe, int width, int height)
-    : component_(component),
+ComponentFilter::ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width,
+                                 int height)
+    : component_(entry.component),
+      has_footprint_(entry.has_footprint),
+      follows_effect_(entry.follows_effect),
       recipe_(recipe),
-      channels_(component.kind == ComponentKind::kVisibility ? 1 : 3),
+      channels_(component_.kind == ComponentKind::kVisibility ? 1 : 3),
       row_samples_(static_cast<std::size_t>(height)),
       row_pixels_(static_cast<std::size_t>(height)) {
-  for (auto& history : history_)
-    history = ComponentHistory(width, height, channels_, recipe.svgf_filter);
+  const bool residual = channels_ == 3 && recipe.blending == Blending::kExpectedError;
+  const auto extras = recipe.svgf_filter ? HistoryExtras::kMoments
+                      : residual         ? HistoryExtras::kResidual
+                                         : HistoryExtras::kNone;
+  for (auto& history : history_) history = ComponentHistory(width, height, channels_, extras);
 }
 
 void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& out) {
@@ -69,18 +77,36 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
   measure(input, tracer ? &*tracer : nullptr, scratch);
 
-  const bool with_shadow = tracer && input.surface != nullptr && uses_shadow_vectors();
-  if (with_shadow) {
-    const auto rule = recipe_.vectors == HistoryVectors::kPaperShadow ? ShadowRule::kPaper
-                                                                      : ShadowRule::kBorrowed;
-    const Channels<float>& means = scratch.means;
-    trace_shadow_history(input.frames, *tracer, rule, means[kField + kShadowValid],
-                         means[kField + kShadowRatio],
-                         std::as_const(scratch.measured)[kField + kShadowRatio], scratch.shadow);
-  }
-  blend(input, with_shadow, scratch);
-  filter(input, tracer.has_value(), scratch, out);
+  if (follows_effect_ && input.surface != nullptr)
+    trace_effect(input, tracer ? &*tracer : nullptr, scratch);
+  blend(input, scratch);
+  filter(input, scratch, out);
   count_history(input.frames.now);
+}
+
+void ComponentFilter::trace_effect(const ComponentInput& input, const ShadowTracer* tracer,
+                                   Scratch& s) const {
+  switch (component_.kind) {
+    case ComponentKind::kVisibility: {
+      const auto rule =
+          recipe_.shadow == ShadowVectors::kPaper ? ShadowRule::kPaper : ShadowRule::kBorrowed;
+      const Channels<float>& means = s.means;
+      trace_shadow_history(input.frames, *tracer, rule, means[kField + kFieldValid],
+                           means[kField + kFieldRatio],
+                           std::as_const(s.measured)[kField + kFieldRatio], s.effect);
+      break;
+    }
+    case ComponentKind::kGlossy: {
+      const auto rule = recipe_.glossy == GlossyVectors::kSpecular     ? GlossyRule::kSpecular
+                        : recipe_.glossy == GlossyVectors::kStochastic ? GlossyRule::kStochastic
+                                                                       : GlossyRule::kRelative;
+      trace_glossy_history(input.frames, input.reflections, rule, input.key, s.effect);
+      break;
+    }
+    case ComponentKind::kIndirect:
+      trace_dual_history(input.frames, *input.surface, s.effect);
+      break;
+  }
 }
 
 void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* tracer,
@@ -94,52 +120,61 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
       s.measured[kSquare].at(x, y) = l * l;
     }
   });
-  if (tracer != nullptr) tracer->measure(s.measured, kField);
+  if (tracer != nullptr)
+    tracer->measure(s.measured, kField);
+  else if (has_footprint_)
+    measure_lobes(input.frames.now, input.reflections, s.measured, kField);
   // Where a visibility is constant and nothing blocks, so are all other channels.
   const Channels<float>& measured = s.measured;
   const ChannelView<const float> varying[2] = {
-      measured[kLuminance], measured[tracer != nullptr ? kField + kShadowRatio : kLuminance]};
+      measured[kLuminance],
+      measured[has_footprint_ ? kField + (tracer != nullptr ? kFieldRatio : kFieldPrecision)
+                              : kLuminance]};
   s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
-  window_means(input.frames.now, measured, tracer != nullptr ? kMeasured : kField, kStatisticsStep,
-               s.window, s.means, &s.measured_activity);
+  window_means(input.frames.now, measured, has_footprint_ ? kMeasured : kField, kStatisticsStep,
+               s.window, s.means, 0, &s.measured_activity);
   for_each_row(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const float mean_square = square(s.means[kLuminance].at(x, y));
       const float floor = channels_ == 1 ? kVisibilityVarianceFloor
                                          : kRelativeVarianceFloor * mean_square + kVarianceFloor;
       s.means[kSampleVariance].at(x, y) = std::max(s.means[kSquare].at(x, y) - mean_square, floor);
-      if (tracer == nullptr) continue;
-      const float valid = s.means[kField + kShadowValid].at(x, y);
+      if (!has_footprint_) continue;
+      const float valid = s.means[kField + kFieldValid].at(x, y);
       for (int c = 0; c < 3; ++c)
         s.footprint[c].at(x, y) =
-            valid > 0.0f ? s.means[kField + kShadowPrecision + c].at(x, y) / valid : 0.0f;
+            valid > 0.0f ? s.means[kField + kFieldPrecision + c].at(x, y) / valid : 0.0f;
     }
   });
 }
 
-void ComponentFilter::blend(const ComponentInput& input, bool with_shadow, Scratch& s) {
-  const HistorySources sources{recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
-                               with_shadow ? &s.shadow : nullptr};
+void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
+  HistorySources sources;
+  if (recipe_.blending != Blending::kNoHistory) sources.surface = input.surface;
+  if (sources.surface != nullptr && follows_effect_) sources.effect = &s.effect;
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
-  if (recipe_.vectors == HistoryVectors::kCandidates && sources.surface != nullptr) {
-    const ExpectedErrorRule& rule =
-        channels_ == 1 ? recipe_.visibility_blend : recipe_.radiance_blend;
-    blend_by_expected_error(input.frames.now, s.noisy, sources,
-                            std::as_const(s.means)[kSampleVariance], rule, before, s.blend,
-                            s.window, now, debug);
+  if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
+    if (channels_ == 1)
+      blend_by_expected_error(input.frames.now, s.noisy, sources,
+                              std::as_const(s.means)[kSampleVariance], recipe_.visibility_blend,
+                              before, s.blend, s.window, now, debug);
+    else
+      blend_radiance(
+          input.frames.now, s.noisy, sources, has_footprint_ ? &s.footprint : nullptr,
+          component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
+          input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
   } else {
     accumulate(input.frames.now, s.noisy, sources, recipe_.accumulation, before, now, debug);
   }
 }
 
-void ComponentFilter::filter(const ComponentInput& input, bool with_footprint, Scratch& s,
-                             Plane& out) {
+void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out) {
   ComponentHistory& now = history_[now_];
   const Signal signal{&now.data, channels_, std::as_const(now).samples(),
                       std::as_const(s.means)[kSampleVariance],
-                      with_footprint ? &s.footprint : nullptr};
+                      has_footprint_ ? &s.footprint : nullptr};
   if (recipe_.svgf_filter) {
     const ComponentHistory& moments = now;
     svgf_filter(input.frames.now, signal, moments.moment(1), moments.moment(2), recipe_.svgf_levels,

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "core/denoiser/recipe.h"
+#include "core/denoiser/plan.h"
+#include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
+#include "core/history/glossy_history.h"
+#include "core/motion/shadow_field.h"
 
 namespace holdfast {
 
@@ -12,15 +15,16 @@ struct Scratch {
   Channels<float> measured;   ///< luminance, its square, then the shadow field
   Channels<float> means;      ///< local means of `measured`; then [1] is the sample variance
   Channels<float> footprint;  ///< E, F, G of the penumbra's footprint
-  ShadowHistory shadow;
+  EffectHistory effect;       ///< where shadows, reflections, hidden surfaces were
   ActivityMap measured_activity;
   WindowScratch window;
   BlendScratch blend;
+  RadianceBlendScratch radiance_blend;
   FilterScratch filter;
   Channels<float> debug;  ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
-  Scratch(int width, int height, bool any_radiance, bool any_shadow, bool blend, bool debug);
+  Scratch(int width, int height, const Plan& plan, bool debug);
   std::size_t bytes() const;
 };
 
@@ -30,13 +34,15 @@ struct ComponentInput {
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
   BlockerPlanes blockers;
+  GlossyPlanes reflections;  ///< of a glossy component that follows them
+  FrameKey key;
 };
 
 /// Filters one component in time and space, and keeps its history.
-///   local statistics -> shadow vectors -> blend with history -> spatial filter
+///   local statistics -> the effect's vectors -> blend with history -> spatial filter
 class ComponentFilter {
  public:
-  ComponentFilter(Component component, const Recipe& recipe, int width, int height);
+  ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width, int height);
 
   /// Filters `scratch.noisy` into `out`. Fills `scratch.debug` if it is there.
   void run(const ComponentInput& input, Scratch& scratch, Plane& out);
@@ -47,16 +53,14 @@ class ComponentFilter {
   std::size_t history_bytes() const { return history_[0].data.bytes() + history_[1].data.bytes(); }
 
  private:
-  bool uses_shadow_vectors() const {
-    return recipe_.vectors == HistoryVectors::kPaperShadow ||
-           recipe_.vectors == HistoryVectors::kCandidates;
-  }
+  void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
-  void blend(const ComponentInput& input, bool with_shadow, Scratch& s);
-  void filter(const ComponentInput& input, bool with_footprint, Scratch& s, Plane& out);
+  void blend(const ComponentInput& input, Scratch& s);
+  void filter(const ComponentInput& input, Scratch& s, Plane& out);
   void count_history(const Guides& now);
 
   Component component_;
+  bool has_footprint_, follows_effect_;
   Recipe recipe_;
   int channels_;
   ComponentHistory history_[2];

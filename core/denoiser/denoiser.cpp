@@ -54,16 +54,17 @@ void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
 class Denoiser::Impl {
  public:
   explicit Impl(const DenoiserConfig& c)
-      : config(c),
-        plan(Plan::make(c)),
-        scratch(c.width, c.height, plan.any_radiance, plan.any_shadow,
-                plan.recipe.vectors == HistoryVectors::kCandidates, c.debug_planes) {
+      : config(c), plan(Plan::make(c)), scratch(c.width, c.height, plan, c.debug_planes) {
     announced = result_planes(c);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
-    for (auto& g : guides) g = Guides(c.width, c.height);
+    for (auto& g : guides) {
+      g = Guides(c.width, c.height);
+      if (plan.roughness) g.roughness = Channels<float>(c.width, c.height, 1);
+      if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
+    }
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
     for (const Plan::Entry& entry : plan.components) {
-      filters.emplace_back(entry.component, plan.recipe, c.width, c.height);
+      filters.emplace_back(entry, plan.recipe, c.width, c.height);
       signals.push_back(component_plane(entry.component));
     }
   }
@@ -108,15 +109,20 @@ class Denoiser::Impl {
     const PlaneId depth{PlaneKind::kDepth, {}}, normal{PlaneKind::kNormal, {}};
     count_repairs(report, depth, load_depth(frame.planes.at(depth), out));
     count_repairs(report, normal, load_normals(frame.planes.at(normal), out));
-    load_ids(frame.planes.find({PlaneKind::kObjectId, {}}), out);
+    load_ids(frame.planes.find({PlaneKind::kObjectId, {}}), out.id);
+    const PlaneId roughness{PlaneKind::kRoughness, {}};
+    if (plan.roughness)
+      count_repairs(report, roughness, load_roughness(frame.planes.at(roughness), out));
+    if (plan.motion) load_motion(frame.planes.at({PlaneKind::kMotion, {}}), out);
   }
 
   void run_component(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
                      ComponentFilter& component_filter, PlaneSet& results, FrameReport& report) {
     const PlaneId id = component_plane(entry.component);
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
-    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}};
-    if (entry.follows_shadows) {
+    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, {}, {}};
+    input.key = {config.seed, frame.index};
+    if (entry.component.kind == ComponentKind::kVisibility && entry.has_footprint) {
       const std::uint32_t light = entry.component.light;
       input.light = &*std::find_if(config.lights.begin(), config.lights.end(),
                                    [&](const Light& l) { return l.id == light; });
@@ -124,6 +130,11 @@ class Denoiser::Impl {
                         &frame.planes.at(PlaneId::of_light(PlaneKind::kLightSample, light)),
                         frame.planes.find(PlaneId::of_light(PlaneKind::kBlockerId, light))};
     }
+    if (entry.component.kind == ComponentKind::kGlossy &&
+        (entry.has_footprint || entry.follows_effect))
+      input.reflections = {&frame.planes.at({PlaneKind::kGlossyDirection, {}}),
+                           &frame.planes.at({PlaneKind::kGlossyHitDistance, {}}),
+                           frame.planes.find({PlaneKind::kGlossyHitId, {}})};
     component_filter.run(input, scratch, results.add(id, config.width, config.height));
     report.mean_history_frames +=
         component_filter.mean_history_frames() / static_cast<double>(filters.size());
@@ -177,7 +188,7 @@ const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 std::size_t Denoiser::memory_bytes() const {
   std::size_t sum =
       impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
-  for (const Guides& g : impl_->guides) sum += g.depth_normal.bytes() + g.id.bytes();
+  for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
   return sum;
 }

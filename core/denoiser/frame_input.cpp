@@ -58,10 +58,31 @@ std::uint64_t load_normals(const Plane& normal, Guides& out) {
   });
 }
 
-void load_ids(const Plane* ids, Guides& out) {
+void load_ids(const Plane* ids, Channels<std::uint32_t>& out) {
   if (ids == nullptr) return;  // stays 0
   for_each_row(ids->height(),
-               [&](int y) { std::copy_n(ids->ids().row(y), ids->width(), out.id[0].row(y)); });
+               [&](int y) { std::copy_n(ids->ids().row(y), ids->width(), out[0].row(y)); });
+}
+
+std::uint64_t load_roughness(const Plane& roughness, Guides& out) {
+  return count_rows(roughness.height(), [&](int y) {
+    std::uint64_t repaired = 0;
+    const float* in = roughness.channel(0).row(y);
+    float* to = out.roughness[0].row(y);
+    for (int x = 0; x < roughness.width(); ++x) {
+      const bool usable = in[x] >= 0.0f && in[x] <= 1.0f;
+      to[x] = usable ? in[x] : (in[x] < 0.0f ? 0.0f : 1.0f);
+      repaired += usable ? 0 : 1;
+    }
+    return repaired;
+  });
+}
+
+void load_motion(const Plane& motion, Guides& out) {
+  for_each_row(motion.height(), [&](int y) {
+    for (int c = 0; c < 2; ++c)
+      std::copy_n(motion.channel(c).row(y), motion.width(), out.motion[c].row(y));
+  });
 }
 
 std::uint64_t load_signal(const Plane& plane, Channels<float>& out) {

@@ -18,7 +18,12 @@ inline constexpr float kLargestRadiance = 1e15f;
 /// repaired. A normal that is not finite or of zero length is repaired to face the camera.
 std::uint64_t load_depth(const Plane& depth, Guides& out);
 std::uint64_t load_normals(const Plane& normal, Guides& out);
-void load_ids(const Plane* ids, Guides& out);
+void load_ids(const Plane* ids, Channels<std::uint32_t>& out);
+
+/// Roughness, kept within 0..1; NaN becomes 1, since nothing is known to be sharp.
+std::uint64_t load_roughness(const Plane& roughness, Guides& out);
+/// The client's motion vectors as they are; those that are not finite are no motion vectors.
+void load_motion(const Plane& motion, Guides& out);
 
 /// A component's plane into `out`. Negative or non-finite values become 0 (visibility: 1, nothing
 /// is known to block), too large ones kLargestRadiance.

@@ -63,23 +63,58 @@ Plan Plan::make(const DenoiserConfig& config) {
     throw InputError("preset", "must be " + names.front(), "'" + config.preset + "'");
   Plan plan;
   plan.recipe = find_recipe(config.recipe);
-  plan.history = plan.recipe.vectors != HistoryVectors::kNone;
+  const Recipe& recipe = plan.recipe;
+  plan.history = recipe.blending != Blending::kNoHistory;
   for (const PlaneId id : config.planes) {
+    const std::uint32_t light = id.component.light;
     if (id.kind == PlaneKind::kVisibility) {
-      const std::uint32_t light = id.component.light;
-      const bool follows = has(config, PlaneId::of_light(PlaneKind::kBlockerDistance, light)) &&
-                           has(config, PlaneId::of_light(PlaneKind::kLightSample, light));
-      plan.components.push_back({id.component, follows});
-      plan.any_shadow |= follows;
-    } else if (id.kind == PlaneKind::kGlossy || id.kind == PlaneKind::kIndirect) {
+      const bool blockers = has(config, PlaneId::of_light(PlaneKind::kBlockerDistance, light)) &&
+                            has(config, PlaneId::of_light(PlaneKind::kLightSample, light));
       plan.components.push_back(
-          {{id.kind == PlaneKind::kGlossy ? ComponentKind::kGlossy : ComponentKind::kIndirect, 0},
-           false});
-      plan.any_radiance = true;
+          {id.component, blockers, blockers && recipe.shadow != ShadowVectors::kNone});
+    } else if (id.kind == PlaneKind::kGlossy) {
+      const bool hits = has(config, {PlaneKind::kGlossyDirection, {}}) &&
+                        has(config, {PlaneKind::kGlossyHitDistance, {}});
+      const bool follows = hits && recipe.glossy != GlossyVectors::kNone;
+      plan.roughness = hits && has(config, {PlaneKind::kRoughness, {}});
+      plan.components.push_back({{ComponentKind::kGlossy, 0}, plan.roughness, follows});
+    } else if (id.kind == PlaneKind::kIndirect) {
+      const bool follows = recipe.indirect != DisocclusionVectors::kNone;
+      plan.components.push_back({{ComponentKind::kIndirect, 0}, false, follows});
+      plan.motion = follows && has(config, {PlaneKind::kMotion, {}});
     }
+  }
+  for (const Entry& entry : plan.components) {
+    plan.any_radiance |= entry.component.kind != ComponentKind::kVisibility;
+    plan.any_footprint |= entry.has_footprint;
+    plan.any_effect |= entry.follows_effect;
   }
   return plan;
 }
+
+namespace {
+
+const char* vectors_of(const Plan::Entry& entry) {
+  if (!entry.follows_effect) return "surface";
+  switch (entry.component.kind) {
+    case ComponentKind::kVisibility: return "shadow and surface";
+    case ComponentKind::kGlossy: return "reflection and surface";
+    case ComponentKind::kIndirect: return "surface and, where it was hidden, dual";
+  }
+  return "";
+}
+
+const char* blending_of(const Recipe& recipe) {
+  if (recipe.blending == Blending::kExpectedError) return "blended by expected error";
+  switch (recipe.accumulation.rectification) {
+    case Rectification::kNone: return "exponential mean";
+    case Rectification::kClamp: return "exponential mean, clamped";
+    case Rectification::kClampFallback: return "exponential mean, clamped where vectors fail";
+  }
+  return "";
+}
+
+}  // namespace
 
 std::string Plan::text() const {
   std::string text = "recipe " + recipe.name + "\n";
@@ -88,20 +123,12 @@ std::string Plan::text() const {
     const std::string name = component_name(entry.component);
     const bool visibility = entry.component.kind == ComponentKind::kVisibility;
     text +=
-        name + ": local statistics" + (entry.follows_shadows ? ", penumbra footprint" : "") + "\n";
-    if (history) {
-      const bool shadow =
-          entry.follows_shadows && (recipe.vectors == HistoryVectors::kPaperShadow ||
-                                    recipe.vectors == HistoryVectors::kCandidates);
-      text += name + ": history along " + (shadow ? "shadow and surface" : "surface") +
-              " vectors, " +
-              (recipe.vectors == HistoryVectors::kCandidates
-                   ? "blended by expected error"
-                   : (recipe.accumulation.rectification == Rectification::kNone
-                          ? "exponential mean"
-                          : "exponential mean, clamped")) +
-              "\n";
-    }
+        name + ": local statistics" +
+        (entry.has_footprint ? (visibility ? ", penumbra footprint" : ", lobe footprint") : "") +
+        "\n";
+    if (history)
+      text +=
+          name + ": history along " + vectors_of(entry) + " vectors, " + blending_of(recipe) + "\n";
     const int levels = recipe.svgf_filter ? recipe.svgf_levels
                        : visibility       ? recipe.visibility_filter.levels
                                           : recipe.radiance_filter.levels;

@@ -13,13 +13,18 @@ namespace holdfast {
 struct Plan {
   struct Entry {
     Component component;
-    bool follows_shadows = false;  ///< a visibility with blocker planes: shadow vectors, footprint
+    bool has_footprint = false;   ///< samples say how smooth it is: blocker planes, or glossy hits
+                                  ///< with roughness
+    bool follows_effect = false;  ///< by a vector of its own, besides the surface's
   };
   Recipe recipe;
   std::vector<Entry> components;
-  bool history = false;       ///< the recipe keeps history at all
-  bool any_radiance = false;  ///< a component has three channels
-  bool any_shadow = false;    ///< a component follows shadows
+  bool history = false;        ///< the recipe keeps history at all
+  bool any_radiance = false;   ///< a component has three channels
+  bool any_footprint = false;  ///< a component has a footprint
+  bool any_effect = false;     ///< a component follows its effect
+  bool roughness = false;      ///< roughness is kept with the guides
+  bool motion = false;         ///< the client's motion vectors are kept with the guides
 
   /// Checks `config` and derives its plan. Throws InputError naming what is wrong.
   static Plan make(const DenoiserConfig& config);

@@ -7,29 +7,43 @@ namespace {
 
 /// What all recipes share: the same filters and constants, so that they differ by their name's
 /// part.
-Recipe base(std::string name, HistoryVectors vectors) {
+Recipe base(std::string name, Blending blending = Blending::kExponential) {
   Recipe recipe;
   recipe.name = std::move(name);
-  recipe.vectors = vectors;
-  // Sparse indirect light wants large windows and a cautious threshold (method of expected error).
-  recipe.radiance_blend.window_step = 3;
-  recipe.radiance_blend.noise_threshold = 2.0f;
+  recipe.blending = blending;
+  // Reflections slide without a sign in their surface: the slightest difference counts.
+  recipe.glossy_blend.sudden_threshold = 1.0f;
+  recipe.glossy_blend.window_step = 1;
   recipe.radiance_filter = {.levels = 4, .luminance_sigma = 4.0f};
   return recipe;
 }
 
 std::vector<Recipe> make_recipes() {
-  Recipe spatial = base("spatial", HistoryVectors::kNone);
-  Recipe traditional = base("traditional", HistoryVectors::kSurface);
-  Recipe clamp = base("clamp", HistoryVectors::kSurface);
+  const Recipe spatial = base("spatial", Blending::kNoHistory);
+  const Recipe traditional = base("traditional");
+  Recipe clamp = base("clamp");
   clamp.accumulation.rectification = Rectification::kClamp;
-  Recipe svgf = base("svgf", HistoryVectors::kSurface);
+  Recipe specular = base("specular");
+  specular.glossy = GlossyVectors::kSpecular;
+  Recipe specular_clamp = specular;
+  specular_clamp.name = "specular-clamp";
+  specular_clamp.accumulation.rectification = Rectification::kClamp;
+  Recipe svgf = base("svgf");
   svgf.accumulation.alpha = 0.2f;  // SVGF sec. 4.1
   svgf.svgf_filter = true;
-  Recipe paper = base("paper", HistoryVectors::kPaperShadow);
+  Recipe paper = base("paper");
+  paper.shadow = ShadowVectors::kPaper;
+  paper.glossy = GlossyVectors::kStochastic;
+  paper.indirect = DisocclusionVectors::kDual;
   paper.accumulation.rectification = Rectification::kClampFallback;
-  Recipe reliable = base("reliable", HistoryVectors::kCandidates);
-  return {spatial, traditional, clamp, svgf, paper, reliable};
+  Recipe reliable = base("reliable", Blending::kExpectedError);
+  reliable.shadow = ShadowVectors::kBorrowed;
+  reliable.glossy = GlossyVectors::kRelative;
+  reliable.indirect = DisocclusionVectors::kDual;
+  Recipe xr = base("xrel");
+  xr.glossy = GlossyVectors::kRelative;
+  xr.indirect = DisocclusionVectors::kDual;
+  return {spatial, traditional, clamp, specular, specular_clamp, svgf, paper, reliable, xr};
 }
 
 }  // namespace

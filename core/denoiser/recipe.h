@@ -6,26 +6,42 @@
 
 #include "core/history/accumulate.h"
 #include "core/history/expected_error.h"
+#include "core/history/radiance_blend.h"
 #include "core/spatial/adaptive_filter.h"
 
 namespace holdfast {
 
-/// Which histories a visibility may follow. Glossy and indirect follow the surface under all but
-/// kNone.
-enum class HistoryVectors {
-  kNone,         ///< no history at all
-  kSurface,      ///< the surface's motion vector
-  kPaperShadow,  ///< TRMV's shadow vector where there is one, else the surface's
-  kCandidates,   ///< shadow and surface vectors, chosen and weighed by expected error
+/// What the visibility of a light with blocker planes follows besides its surface.
+enum class ShadowVectors {
+  kNone,
+  kPaper,     ///< TRMV's shadow vector of the pixel's own blocker
+  kBorrowed,  ///< the shadow vector of the mean blocker nearby
+};
+
+/// What a reflection with hit planes follows besides its surface.
+enum class GlossyVectors { kNone, kSpecular, kStochastic, kRelative };
+
+/// What indirect light follows where its surface was hidden.
+enum class DisocclusionVectors { kNone, kDual };
+
+/// How a component is blended with its history.
+enum class Blending {
+  kNoHistory,
+  kExponential,    ///< an exponential mean along the effect's vector, else the surface's
+  kExpectedError,  ///< candidates, weighed by their expected error
 };
 
 /// A recipe: a choice of parts. Data, not code; all recipes run through the same passes.
 struct Recipe {
   std::string name;
-  HistoryVectors vectors = HistoryVectors::kSurface;
-  AccumulationRule accumulation;       ///< unless vectors is kCandidates
-  ExpectedErrorRule visibility_blend;  ///< if vectors is kCandidates
-  ExpectedErrorRule radiance_blend;
+  Blending blending = Blending::kExponential;
+  ShadowVectors shadow = ShadowVectors::kNone;
+  GlossyVectors glossy = GlossyVectors::kNone;
+  DisocclusionVectors indirect = DisocclusionVectors::kNone;
+  AccumulationRule accumulation;       ///< of kExponential
+  ExpectedErrorRule visibility_blend;  ///< of kExpectedError
+  RadianceBlendRule glossy_blend;
+  RadianceBlendRule indirect_blend;
   AdaptiveFilterSettings visibility_filter;  ///< unless svgf_filter
   AdaptiveFilterSettings radiance_filter;
   bool svgf_filter = false;  ///< SVGF's own spatial filter, first level fed back into history

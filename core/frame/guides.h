@@ -11,17 +11,24 @@ namespace holdfast {
 struct Guides {
   Channels<float> depth_normal;  ///< planar view depth in metres, then the normal's X, Y, Z
   Channels<std::uint32_t> id;    ///< object ids, 0 where none was given
+  Channels<float> roughness;     ///< perceptual, 0..1; empty where no component needs it
+  Channels<float> motion;        ///< given motion_px X, Y; empty where the client gives none
   ViewGeometry view;
   PixelRays<float> rays;  ///< of `view`
 
   Guides() = default;
   Guides(int width, int height) : depth_normal(width, height, 4), id(width, height, 1) {}
 
+  std::size_t bytes() const {
+    return depth_normal.bytes() + id.bytes() + roughness.bytes() + motion.bytes();
+  }
   ChannelView<const float> depth() const { return depth_normal[0]; }
   ChannelView<const float> normal(int axis) const { return depth_normal[1 + axis]; }
   glm::vec3 normal_at(int x, int y) const {
     return {normal(0).at(x, y), normal(1).at(x, y), normal(2).at(x, y)};
   }
+  /// Perceptual roughness, 0..1; that of a mirror where none was given.
+  float roughness_at(int x, int y) const { return roughness ? roughness[0].at(x, y) : 0.0f; }
   /// Camera-relative position of the surface seen by pixel (x, y), metres, world axes.
   glm::vec3 position_at(int x, int y) const {
     return rays.position(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,

@@ -62,6 +62,12 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
 
 void SceneMotion::reset() { *this = SceneMotion(); }
 
+bool SceneMotion::at_rest() const {
+  return geometry_at_rest_ &&
+         std::all_of(light_tracks_.begin(), light_tracks_.end(),
+                     [](const auto& light) { return light.second.now == light.second.before; });
+}
+
 int SceneMotion::slot_of(std::uint32_t object_id) const {
   const auto it = std::lower_bound(slot_ids_.begin(), slot_ids_.end(), object_id);
   return it != slot_ids_.end() && *it == object_id ? static_cast<int>(it - slot_ids_.begin()) + 1
@@ -92,7 +98,8 @@ ObjectMotion<float> SceneMotion::compose(const Track& track) const {
   ObjectMotion<float> motion;
   const glm::dmat4 inverse = glm::inverse(track.now);
   const double det = glm::determinant(glm::dmat3(track.now));
-  if (det == 0 || !std::isfinite(1.0 / det)) {
+  const double det_before = glm::determinant(glm::dmat3(track.before));
+  if (!std::isfinite(1.0 / det) || !std::isfinite(1.0 / det_before)) {
     motion.traceable = false;
     return motion;
   }
@@ -103,6 +110,8 @@ ObjectMotion<float> SceneMotion::compose(const Track& track) const {
   motion.carry = glm::mat4(carry);
   motion.rotate = glm::mat3(glm::inverseTranspose(glm::dmat3(world)));
   motion.prev_pixel = glm::mat4(previous_view_.pixel_from_relative * carry);
+  const glm::dmat4 onwards = glm::inverse(carry);
+  motion.next_pixel = glm::mat4(view_.pixel_from_relative * onwards);
   motion.at_rest = still && camera_at_rest_;
   return motion;
 }

@@ -17,6 +17,8 @@ struct ObjectMotion {
   glm::mat<4, 4, T> carry{1};       ///< previous relative point from current relative point
   glm::mat<4, 4, T> prev_pixel{1};  ///< (x w, y w, depth, w) of the previous frame from the
                                     ///< current relative point
+  glm::mat<4, 4, T> next_pixel{1};  ///< (x w, y w, depth, w) of the current frame from the
+                                    ///< previous relative point
   bool at_rest = false;             ///< object and camera both stand still: motion is exactly 0
   bool traceable = true;            ///< false for a singular transform: nothing corresponds
 };
@@ -43,6 +45,8 @@ class SceneMotion {
   int slot_count() const { return static_cast<int>(objects_.size()); }
   /// True when camera and all objects stand still.
   bool geometry_at_rest() const { return geometry_at_rest_; }
+  /// True when the lights stand still, too.
+  bool at_rest() const;
 
   /// Camera-relative world_from_light now and one frame ago. Identity at the world's origin if no
   /// frame has placed the light.

@@ -53,14 +53,21 @@ struct PixelPoint {
   bool in_front;
 };
 
-/// Projects a camera-relative point with `ViewGeometry::pixel_from_relative`.
+/// Projects a homogeneous camera-relative point (w = 1) or direction (w = 0) with
+/// `ViewGeometry::pixel_from_relative`.
 template <class T>
-PixelPoint<T> project(const glm::mat<4, 4, T>& pixel_from_relative, const glm::vec<3, T>& point) {
-  const glm::vec<4, T> h = pixel_from_relative * glm::vec<4, T>(point, T(1));
+PixelPoint<T> project(const glm::mat<4, 4, T>& pixel_from_relative, const glm::vec<4, T>& point) {
+  const glm::vec<4, T> h = pixel_from_relative * point;
   const bool in_front = h.w > T(0) && h.z > T(0);
   const T x = in_front ? h.x / h.w : T(0), y = in_front ? h.y / h.w : T(0);
   const T reach = x * x + y * y;  // also keeps overflow from passing for a position
   return reach < T(1e18) ? PixelPoint<T>{x, y, h.z, in_front} : PixelPoint<T>{0, 0, h.z, false};
+}
+
+/// The same for a point.
+template <class T>
+PixelPoint<T> project(const glm::mat<4, 4, T>& pixel_from_relative, const glm::vec<3, T>& point) {
+  return project(pixel_from_relative, glm::vec<4, T>(point, T(1)));
 }
 
 }  // namespace holdfast

@@ -62,20 +62,20 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
   const float most_samples = (2.0f - rule.alpha) / rule.alpha;
   for_each_row(guides.view.height, [&](int y) {
     for (int x = 0; x < guides.view.width; ++x) {
-      const bool by_shadow = sources.shadow != nullptr && sources.shadow->taps[0].at(x, y).any();
+      const bool by_effect = sources.effect != nullptr && sources.effect->taps[0].at(x, y).any();
       const bool valid =
-          by_shadow || (sources.surface != nullptr && sources.surface->taps[0].at(x, y).any());
+          by_effect || (sources.surface != nullptr && sources.surface->taps[0].at(x, y).any());
       Colour history{};
       float samples = 0, trust = 0;
       Taps taps;
       if (valid) {
-        taps = by_shadow ? sources.shadow->taps[0].at(x, y) : sources.surface->taps[0].at(x, y);
-        trust = by_shadow ? sources.shadow->motion[2].at(x, y) : 1.0f;
+        taps = by_effect ? sources.effect->taps[0].at(x, y) : sources.surface->taps[0].at(x, y);
+        trust = by_effect ? sources.effect->motion[2].at(x, y) : 1.0f;
         samples = gather(before.samples(), taps);
         for (int c = 0; c < channels; ++c)
           history[static_cast<std::size_t>(c)] = gather(before.data[c], taps);
         if (rule.rectification == Rectification::kClamp ||
-            (rule.rectification == Rectification::kClampFallback && !by_shadow))
+            (rule.rectification == Rectification::kClampFallback && !by_effect))
           history =
               clamp_to_neighbourhood(guides, noisy, channels, x, y, rule.clamp_gamma, history);
       }
@@ -96,7 +96,7 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
       }
       if (debug != nullptr) {
         const Channels<float>* motion =
-            by_shadow ? &sources.shadow->motion : (valid ? &sources.surface->motion : nullptr);
+            by_effect ? &sources.effect->motion : (valid ? &sources.surface->motion : nullptr);
         (*debug)[kDebugX].at(x, y) = motion != nullptr ? (*motion)[0].at(x, y) : 0.0f;
         (*debug)[kDebugY].at(x, y) = motion != nullptr ? (*motion)[1].at(x, y) : 0.0f;
         (*debug)[kDebugFrames].at(x, y) = samples;

@@ -1,32 +1,49 @@
 #pragma once
 
-#include "core/history/shadow_history.h"
+#include "core/history/effect_history.h"
 #include "core/history/surface_history.h"
 
 namespace holdfast {
 
+/// What a component keeps besides its signal and samples.
+enum class HistoryExtras {
+  kNone,
+  kMoments,   ///< the first two moments of the luminance
+  kResidual,  ///< mean difference of the history to later frames, R, G, B, and its variance
+};
+
 /// What is kept of one component between frames, per pixel: the accumulated signal, the number of
-/// equal samples behind it, and, where the recipe asks for them, the first two moments of its
-/// luminance.
+/// equal samples behind it, and what the recipe asks for besides.
 struct ComponentHistory {
   Channels<float> data;
   int channels = 1;  ///< of the signal: 1 or 3
+  HistoryExtras extras = HistoryExtras::kNone;
 
   ComponentHistory() = default;
-  ComponentHistory(int width, int height, int signal_channels, bool with_moments)
-      : data(width, height, signal_channels + (with_moments ? 3 : 1)), channels(signal_channels) {}
+  ComponentHistory(int width, int height, int signal_channels, HistoryExtras with)
+      : data(width, height, signal_channels + 1 + extra_channels(with)),
+        channels(signal_channels),
+        extras(with) {}
+
+  static int extra_channels(HistoryExtras extras) {
+    return extras == HistoryExtras::kNone ? 0 : (extras == HistoryExtras::kMoments ? 2 : 4);
+  }
 
   ChannelView<const float> samples() const { return data[channels]; }
   ChannelView<float> samples() { return data[channels]; }
-  bool has_moments() const { return data.count() > channels + 1; }
+  bool has_moments() const { return extras == HistoryExtras::kMoments; }
   ChannelView<const float> moment(int order) const { return data[channels + order]; }
   ChannelView<float> moment(int order) { return data[channels + order]; }
+  /// R, G, B (0..2) and variance (3) of the residual.
+  ChannelView<const float> residual(int c) const { return data[channels + 1 + c]; }
+  ChannelView<float> residual(int c) { return data[channels + 1 + c]; }
 };
 
-/// The histories that a component may follow. A null pointer: none of that kind.
+/// The histories that a component may follow: its surface's, and that of the effect itself (shadow,
+/// reflection, disocclusion). A null pointer: none of that kind.
 struct HistorySources {
   const SurfaceHistory* surface = nullptr;
-  const ShadowHistory* shadow = nullptr;
+  const EffectHistory* effect = nullptr;
 };
 
 /// Optional record of what a temporal pass did, for the debug planes: motion_px X, Y, frames of

@@ -56,7 +56,7 @@ void gather_candidates(const Guides& guides, const Channels<float>& noisy,
         for (int c = 0; c < 3; ++c) take(surface, c, c, 3);
       } else {
         take(surface, 0, 0, 2);
-        take(sources.shadow != nullptr ? sources.shadow->taps[0].at(x, y) : Taps{}, 0, 1, 3);
+        take(sources.effect != nullptr ? sources.effect->taps[0].at(x, y) : Taps{}, 0, 1, 3);
       }
     }
   });
@@ -120,13 +120,13 @@ struct Blend {
 
   /// Motion of the shadow over its surface at (x, y), pixels.
   float slide_px(int x, int y) const {
-    const Channels<float>&shadow = sources.shadow->motion, &surface = sources.surface->motion;
+    const Channels<float>&shadow = sources.effect->motion, &surface = sources.surface->motion;
     return std::abs(shadow[0].at(x, y) - surface[0].at(x, y)) +
            std::abs(shadow[1].at(x, y) - surface[1].at(x, y));
   }
 
   void record(int x, int y, int slot, float samples, float trust) const {
-    const Channels<float>& motion = slot == 1 ? sources.shadow->motion : sources.surface->motion;
+    const Channels<float>& motion = slot == 1 ? sources.effect->motion : sources.surface->motion;
     (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
     (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
     (*debug)[kDebugFrames].at(x, y) = samples;
@@ -150,7 +150,7 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   s.activity.measure(guides, {differences, static_cast<std::size_t>(count)}, 1 + rule.window_step,
                      0.0f, true);
   const auto spread =
-      window_means(guides, s.differences, count, rule.window_step, window, s.bias, &s.activity);
+      window_means(guides, s.differences, count, rule.window_step, window, s.bias, 0, &s.activity);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { blend.row(y); });
 }

@@ -35,7 +35,7 @@ float falloff_at(const Guides& previous, const Receiver& receiver, float px, flo
 
 void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule,
                           ChannelView<const float> valid, ChannelView<const float> ratio,
-                          ChannelView<const float> own_ratio, ShadowHistory& out) {
+                          ChannelView<const float> own_ratio, EffectHistory& out) {
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     for (int x = 0; x < now.view.width; ++x) {
@@ -60,10 +60,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
                       : 1.0f;
         }
       }
-      out.taps[0].at(x, y) = taps;
-      out.motion[0].at(x, y) = motion_x;
-      out.motion[1].at(x, y) = motion_y;
-      out.motion[2].at(x, y) = trust;
+      out.set(x, y, taps, motion_x, motion_y, trust);
     }
   });
 }

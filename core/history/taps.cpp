@@ -17,7 +17,12 @@ class TapTest {
   bool operator()(int x, int y) const {
     if (x < 0 || y < 0 || x >= previous_.view.width || y >= previous_.view.height) return false;
     const float depth = previous_.depth().at(x, y);
-    if (!(depth > 0.0f) || previous_.id[0].at(x, y) != receiver_.id) return false;
+    return depth > 0.0f && previous_.id[0].at(x, y) == receiver_.id && on_plane(x, y);
+  }
+
+  /// The same, but for the id.
+  bool on_plane(int x, int y) const {
+    const float depth = previous_.depth().at(x, y);
     const float distance = glm::dot(receiver_.normal, previous_.position_at(x, y)) - plane_;
     const PixelRays<float>& rays = previous_.rays;
     const float footprint = angle_ * (rays.near_weight + rays.far_weight * depth);
@@ -95,6 +100,17 @@ Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid)
 
 Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver) {
   return bilinear_taps(previous, x, y, TapTest(previous, receiver));
+}
+
+Taps find_similar_taps(const Guides& previous, float x, float y, const Receiver& receiver,
+                       std::uint32_t foreign_id) {
+  const TapTest test(previous, receiver);
+  return bilinear_taps(previous, x, y, [&](int tx, int ty) {
+    if (tx < 0 || ty < 0 || tx >= previous.view.width || ty >= previous.view.height) return false;
+    const std::uint32_t id = previous.id[0].at(tx, ty);
+    return previous.depth().at(tx, ty) > 0.0f && (id != foreign_id || id == receiver.id) &&
+           test.on_plane(tx, ty);
+  });
 }
 
 bool same_surface(const Guides& now, const Guides& previous, int x, int y) {

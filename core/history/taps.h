@@ -31,6 +31,11 @@ inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
 /// renormalised; else the nearest valid tap of the 3x3 neighbourhood; else none.
 Taps find_taps(const Guides& previous, float x, float y, const Receiver& receiver);
 
+/// As find_taps for what stands in for a receiver: any id counts, but `foreign_id` only if it is
+/// the receiver's own.
+Taps find_similar_taps(const Guides& previous, float x, float y, const Receiver& receiver,
+                       std::uint32_t foreign_id);
+
 /// True where both frames show exactly the same surface at pixel (x, y).
 bool same_surface(const Guides& now, const Guides& previous, int x, int y);
 

@@ -43,7 +43,7 @@ bool ShadowTracer::blocked(int x, int y) const {
 void ShadowTracer::measure(Channels<float>& out, int first) const {
   for_each_row(now_.view.height, [&](int y) {
     for (int x = 0; x < now_.view.width; ++x) {
-      float field[kShadowFieldChannels] = {};
+      float field[kEffectFieldChannels] = {};
       if (blocked(x, y)) {
         const glm::vec4 light =
             relative_from_light_ * light_point(light_, u_.at(x, y), v_.at(x, y));
@@ -55,12 +55,12 @@ void ShadowTracer::measure(Channels<float>& out, int first) const {
           const float beyond = std::max(1.0f - light.w * ratio, 1e-3f);  // blocker to light
           const glm::vec3 precision =
               penumbra_precision(point, normal, -beyond * to_light, ratio / beyond);
-          field[kShadowValid] = 1.0f;
-          field[kShadowRatio] = ratio;
-          for (int k = 0; k < 3; ++k) field[kShadowPrecision + k] = precision[k];
+          field[kFieldValid] = 1.0f;
+          field[kFieldRatio] = ratio;
+          for (int k = 0; k < 3; ++k) field[kFieldPrecision + k] = precision[k];
         }
       }
-      for (int c = 0; c < kShadowFieldChannels; ++c) out[first + c].at(x, y) = field[c];
+      for (int c = 0; c < kEffectFieldChannels; ++c) out[first + c].at(x, y) = field[c];
     }
   });
 }
@@ -81,8 +81,7 @@ glm::vec3 ShadowTracer::penumbra_precision(const glm::vec3& point, const glm::ve
     xy += kCastVariance * dx * dy;
     yy += kCastVariance * dy * dy;
   }
-  const float scale = 0.5f / std::max(xx * yy - xy * xy, 1e-12f);
-  return {yy * scale, -xy * scale, xx * scale};
+  return precision_of_covariance(xx, xy, yy);
 }
 
 PixelPoint<float> ShadowTracer::follow_own(int x, int y, float ratio) const {

@@ -2,6 +2,7 @@
 
 #include "core/frame/guides.h"
 #include "core/frame/scene_motion.h"
+#include "core/motion/effect_field.h"
 
 namespace holdfast {
 
@@ -12,22 +13,6 @@ struct BlockerPlanes {
   const Plane* id = nullptr;        ///< instance of the blocker; null: blockers are static
 
   explicit operator bool() const { return distance != nullptr && sample != nullptr; }
-};
-
-/// Channels of a shadow field. All are 0 where the light sample is not blocked or cannot be
-/// followed, so that local means of the channels, divided by that of kShadowValid, are means over
-/// the blocked samples nearby: borrowed blockers, in the spirit of the search of PCSS.
-///   kShadowValid      1
-///   kShadowRatio      distance of the blocker over that of the light sample, 0..1; for a
-///                     directional light the distance of the blocker in metres
-///   kShadowPrecision  E, F, G in 1 / px^2: the penumbra's footprint, half the inverse covariance
-///   of
-///                     the light's shape as the blocker casts it on the receiver's plane, in pixels
-enum ShadowFieldChannel {
-  kShadowValid,
-  kShadowRatio,
-  kShadowPrecision,
-  kShadowFieldChannels = kShadowPrecision + 3
 };
 
 /// One light of one frame: measures its shadows and follows them to the previous frame.
@@ -41,7 +26,7 @@ class ShadowTracer {
   ///   reads guides, blocker planes | writes `out` | halo 0
   void measure(Channels<float>& out, int first) const;
 
-  /// The previous pixel of the shadow at (x, y) by its own blocked sample, whose kShadowRatio is
+  /// The previous pixel of the shadow at (x, y) by its own blocked sample, whose kFieldRatio is
   /// `ratio`. `in_front` is false where it cannot be followed.
   PixelPoint<float> follow_own(int x, int y, float ratio) const;
 

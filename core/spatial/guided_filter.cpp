@@ -185,6 +185,12 @@ HOLDFAST_INLINE void mean2_body(const FilterRow& a) {
 HOLDFAST_INLINE void mean3_body(const FilterRow& a) {
   filter_row_body<3, false, Spread::kVariance, false>(a);
 }
+HOLDFAST_INLINE void mean4_body(const FilterRow& a) {
+  filter_row_body<4, false, Spread::kVariance, false>(a);
+}
+HOLDFAST_INLINE void footprint_mean4_body(const FilterRow& a) {
+  filter_row_body<4, false, Spread::kVariance, true>(a);
+}
 HOLDFAST_INLINE void mean7_body(const FilterRow& a) {
   filter_row_body<7, false, Spread::kVariance, false>(a);
 }
@@ -206,6 +212,9 @@ HOLDFAST_INLINE void variance_guided3_body(const FilterRow& a) {
 HOLDFAST_INLINE void sample_weighted3_body(const FilterRow& a) {
   filter_row_body<3, true, Spread::kSamples, false>(a);
 }
+HOLDFAST_INLINE void footprint_weighted3_body(const FilterRow& a) {
+  filter_row_body<3, true, Spread::kSamples, true>(a);
+}
 HOLDFAST_INLINE void footprint_weighted1_body(const FilterRow& a) {
   filter_row_body<1, true, Spread::kSamples, true>(a);
 }
@@ -213,6 +222,8 @@ HOLDFAST_INLINE void footprint_weighted1_body(const FilterRow& a) {
 HOLDFAST_KERNEL(mean1, FilterRow)
 HOLDFAST_KERNEL(mean2, FilterRow)
 HOLDFAST_KERNEL(mean3, FilterRow)
+HOLDFAST_KERNEL(mean4, FilterRow)
+HOLDFAST_KERNEL(footprint_mean4, FilterRow)
 HOLDFAST_KERNEL(mean7, FilterRow)
 HOLDFAST_KERNEL(weighted_mean1, FilterRow)
 HOLDFAST_KERNEL(footprint_mean1, FilterRow)
@@ -221,6 +232,7 @@ HOLDFAST_KERNEL(sample_weighted1, FilterRow)
 HOLDFAST_KERNEL(variance_guided3, FilterRow)
 HOLDFAST_KERNEL(sample_weighted3, FilterRow)
 HOLDFAST_KERNEL(footprint_weighted1, FilterRow)
+HOLDFAST_KERNEL(footprint_weighted3, FilterRow)
 
 }  // namespace
 
@@ -228,7 +240,7 @@ void filter_row(const FilterRow& row) noexcept {
   const bool one = row.channels == 1;
   if (row.luminance) {
     assert(one || row.channels == 3);
-    if (row.footprint[0]) return footprint_weighted1(row);
+    if (row.footprint[0]) return one ? footprint_weighted1(row) : footprint_weighted3(row);
     if (row.spread == Spread::kSamples) return one ? sample_weighted1(row) : sample_weighted3(row);
     return one ? variance_guided1(row) : variance_guided3(row);
   }
@@ -238,6 +250,7 @@ void filter_row(const FilterRow& row) noexcept {
     case 1: return mean1(row);
     case 2: return mean2(row);
     case 3: return mean3(row);
+    case 4: return row.footprint[0] ? footprint_mean4(row) : mean4(row);
     default: assert(row.channels == 7); return mean7(row);
   }
 }

@@ -12,12 +12,15 @@ WindowScratch::WindowScratch(int width, int height)
 
 ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
                                       int second_step, WindowScratch& scratch, Channels<float>& out,
-                                      const ActivityMap* activity) {
+                                      int first_out, const ActivityMap* activity,
+                                      const Channels<float>* footprint) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = count;
   pass.activity = activity;
+  if (footprint != nullptr)
+    for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];
   pass.spread = Spread::kVariance;
   for (int c = 0; c < count; ++c) {
     pass.in[c] = in[c];
@@ -30,7 +33,7 @@ ChannelView<const float> window_means(const Guides& guides, const Channels<float
   pass.step = second_step;
   for (int c = 0; c < count; ++c) {
     pass.in[c] = std::as_const(scratch.between)[c];
-    pass.out[c] = out[c];
+    pass.out[c] = out[first_out + c];
   }
   pass.spread_in = std::as_const(scratch.spread)[1];
   pass.spread_out = scratch.spread[2];

@@ -64,7 +64,7 @@ TEST(Accumulate, TrustInAShadowVectorScalesHistory) {
   h.follow_shadow(0, 0, 3, 0, 1.0f);
   h.follow_shadow(1, 0, 3, 0, 0.4f);
   h.follow_shadow(2, 0, 3, 0, 0.0f);
-  accumulate(h.guides, h.noisy, h.by_shadow(), {.alpha = 0.1f}, h.before, h.now, nullptr);
+  accumulate(h.guides, h.noisy, h.by_effect(), {.alpha = 0.1f}, h.before, h.now, nullptr);
   // a = 1/(3+1), a' = 1 - trust 3/4
   EXPECT_NEAR(h.now.data[0].at(0, 0), 0.25f + 0.75f * 0.5f, 1e-6f);
   EXPECT_NEAR(h.now.data[0].at(1, 0), 0.7f + 0.3f * 0.5f, 1e-6f);
@@ -137,7 +137,7 @@ TEST(Accumulate, FallbackClampSparesTheShadowVector) {
   StillHistory h = noisy_neighbourhood(1);
   h.follow_shadow(1, 1, 1, 1);
   const AccumulationRule rule{.alpha = 0.1f, .rectification = Rectification::kClampFallback};
-  accumulate(h.guides, h.noisy, h.by_shadow(), rule, h.before, h.now, nullptr);
+  accumulate(h.guides, h.noisy, h.by_effect(), rule, h.before, h.now, nullptr);
   EXPECT_NEAR(h.now.data[0].at(1, 1), 0.05f + 0.9f * 5.0f, 1e-5f);
   EXPECT_LT(h.now.data[0].at(0, 0), 1.0f);
 }
@@ -159,7 +159,7 @@ TEST(Accumulate, DebugTellsMotionSamplesAndWeightOfHistory) {
   h.follow_shadow(0, 0, 1, 0);
   h.surface.taps[0].at(1, 0) = {};
   Channels<float> debug(2, 1, kDebugChannels);
-  accumulate(h.guides, h.noisy, h.by_shadow(), {.alpha = 0.1f}, h.before, h.now, &debug);
+  accumulate(h.guides, h.noisy, h.by_effect(), {.alpha = 0.1f}, h.before, h.now, &debug);
   EXPECT_EQ(debug[kDebugX].at(0, 0), 1.0f);
   EXPECT_EQ(debug[kDebugFrames].at(0, 0), 3.0f);
   EXPECT_FLOAT_EQ(debug[kDebugTrust].at(0, 0), 0.75f);

@@ -74,7 +74,7 @@ TEST(ExpectedError, UnbiasedStaticHistoryGrowsToTheCap) {
   toss(b.before.data, random);
   for (int frame = 0; frame < 200; ++frame) {
     toss(b.noisy, random);
-    b.run(b.by_shadow());
+    b.run(b.by_effect());
     std::swap(b.before, b.now);
   }
   EXPECT_GT(mean_of(std::as_const(b.before).samples()), 0.8 * 64);
@@ -203,7 +203,7 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
       if (kind >= 2) b.shadow.motion[1].at(x, y) = random.real(-0.2f, 0.2f);
     }
   const ExpectedErrorRule rule;
-  b.run(b.by_shadow(), rule);
+  b.run(b.by_effect(), rule);
 
   std::vector<double> difference[2], value[2], samples[2];
   for (int y = 0; y < kHeight; ++y)
@@ -270,7 +270,7 @@ TEST(ExpectedError, ShadowAtRestKeepsAHistoryThatASlidingOneRejects) {
         if (sliding) b.shadow.motion[0].at(x, y) = 20.0f;
       }
     Channels<float> debug(kWidth, kHeight, kDebugChannels);
-    b.run(b.by_shadow(), {}, &debug);
+    b.run(b.by_effect(), {}, &debug);
     weights[sliding ? 1 : 0] = debug[kDebugTrust].at(10, 8);
   }
   EXPECT_GT(weights[0], 0.95f);

@@ -10,19 +10,20 @@ struct StillHistory {
   int width, height;
   Guides guides;
   SurfaceHistory surface;
-  ShadowHistory shadow;
+  EffectHistory shadow;
   Channels<float> noisy;
   ComponentHistory before, now;
 
-  StillHistory(int w, int h, int channels, bool with_moments = false)
+  StillHistory(int w, int h, int channels,
+               HistoryExtras extras = HistoryExtras::kNone)
       : width(w),
         height(h),
         guides(wall(orthographic_camera(w, h), w, h)),
         surface(w, h),
         shadow(w, h),
         noisy(w, h, channels),
-        before(w, h, channels, with_moments),
-        now(w, h, channels, with_moments) {
+        before(w, h, channels, extras),
+        now(w, h, channels, extras) {
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) surface.taps[0].at(x, y) = identity_taps(guides, x, y);
     fill(before.samples(), 1.0f);
@@ -34,7 +35,7 @@ struct StillHistory {
     shadow.motion[2].at(x, y) = trust;
   }
   HistorySources by_surface() const { return {&surface, nullptr}; }
-  HistorySources by_shadow() const { return {&surface, &shadow}; }
+  HistorySources by_effect() const { return {&surface, &shadow}; }
 };
 
 }  // namespace holdfast::test

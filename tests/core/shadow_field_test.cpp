@@ -97,13 +97,13 @@ TEST(ShadowTracer, FollowsABlockedSampleThroughAllMotions) {
     const int x = 24, y = 16;
     const float u = 0.3f, v = 0.8f;
     const glm::dvec3 blocker = world.block(x, y, u, v, 0.4);
-    Channels<float> field(kWidth, kHeight, kShadowFieldChannels);
+    Channels<float> field(kWidth, kHeight, kEffectFieldChannels);
     const ShadowTracer tracer = world.tracer();
     tracer.measure(field, 0);
-    EXPECT_EQ(field[kShadowValid].at(x, y), 1.0f);
-    EXPECT_EQ(field[kShadowValid].at(x + 1, y), 0.0f);
-    EXPECT_NEAR(field[kShadowRatio].at(x, y), 0.4f, 1e-5f);
-    const auto pixel = tracer.follow_own(x, y, field[kShadowRatio].at(x, y));
+    EXPECT_EQ(field[kFieldValid].at(x, y), 1.0f);
+    EXPECT_EQ(field[kFieldValid].at(x + 1, y), 0.0f);
+    EXPECT_NEAR(field[kFieldRatio].at(x, y), 0.4f, 1e-5f);
+    const auto pixel = tracer.follow_own(x, y, field[kFieldRatio].at(x, y));
     ASSERT_TRUE(pixel.in_front);
     const glm::dvec2 expected = world.expected(x, y, blocker, u, v);
     EXPECT_NEAR(pixel.x, expected.x, 2e-3);  // float, 48 px
@@ -138,9 +138,9 @@ TEST(ShadowTracer, MeasuresNothingWithoutSurfaceBlockerOrLightAbove) {
   world.distance.channel(0).at(21, 16) = 1.0f;  // sky
   world.distance.channel(0).at(22, 16) = test::kNaN;
   world.distance.channel(0).at(23, 16) = -1.0f;
-  Channels<float> field(kWidth, kHeight, kShadowFieldChannels);
+  Channels<float> field(kWidth, kHeight, kEffectFieldChannels);
   world.tracer().measure(field, 0);
-  for (int c = 0; c < kShadowFieldChannels; ++c)
+  for (int c = 0; c < kEffectFieldChannels; ++c)
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) ASSERT_EQ(field[c].at(x, y), 0.0f) << x << " " << y;
 }
@@ -161,12 +161,12 @@ TEST(ShadowTracer, FootprintIsThePenumbraInPixels) {
                                 1.57079632679489662, glm::dvec3(1, 0, 0));
   world.move();
   world.block(x, y, 0.5f, 0.5f, 0.5);
-  Channels<float> field(kWidth, kHeight, kShadowFieldChannels);
+  Channels<float> field(kWidth, kHeight, kEffectFieldChannels);
   world.tracer().measure(field, 0);
   const double across = 0.75 / px, along = 0.25 / px;
-  EXPECT_NEAR(field[kShadowPrecision].at(x, y), 0.5 / (across * across / 6 + 0.5), 1e-4);
-  EXPECT_NEAR(field[kShadowPrecision + 1].at(x, y), 0.0, 1e-4);
-  EXPECT_NEAR(field[kShadowPrecision + 2].at(x, y), 0.5 / (along * along / 6 + 0.5), 1e-4);
+  EXPECT_NEAR(field[kFieldPrecision].at(x, y), 0.5 / (across * across / 6 + 0.5), 1e-4);
+  EXPECT_NEAR(field[kFieldPrecision + 1].at(x, y), 0.0, 1e-4);
+  EXPECT_NEAR(field[kFieldPrecision + 2].at(x, y), 0.5 / (along * along / 6 + 0.5), 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/history/component_history.h"
+#include "core/spatial/window.h"
+
+namespace holdfast {
+
+/// Constants of the blend of radiance by expected error. Thresholds are in variances of the
+/// difference that they are held against. All ours; tuned on occluder, glossy-floor and static.
+struct RadianceBlendRule {
+  int window_step = 2;                 ///< window of a difference: 3 + 2 step pixels wide
+  float sudden_threshold = 2.0f;       ///< of this frame's difference, taken for noise below
+  float noise_threshold = 1.0f;        ///< of the lasting difference, likewise
+  float rest_sudden_threshold = 20.0f;  ///< the same where nothing in the scene moves: there is
+  float rest_threshold = 10.0f;         ///< little reason to expect bias
+  float residual_beta = 0.2f;          ///< weight of this frame in the lasting difference, 0..1
+  float spatial_samples =
+      40.0f;                   ///< samples that the spatial filter adds: noise averages, bias not
+  float most_samples = 64.0f;  ///< cap of the samples credited to history
+};
+
+/// Scratch of `blend_radiance`: for each candidate, R, G, B and samples; differences to the frame
+/// R, G, B and their square; local means of those.
+struct RadianceBlendScratch {
+  static constexpr int kPerCandidate = 4;
+  Channels<float> candidates, differences, means;
+  ActivityMap activity;
+
+  RadianceBlendScratch() = default;
+  RadianceBlendScratch(int width, int height, int most_candidates)
+      : candidates(width, height, kPerCandidate * most_candidates),
+        differences(width, height, kPerCandidate),
+        means(width, height, kPerCandidate * most_candidates),
+        activity(width, height) {}
+  std::size_t bytes() const { return candidates.bytes() + differences.bytes() + means.bytes(); }
+};
+
+/// Blends RGB radiance with the candidate history of least expected error. For a candidate h with n
+/// samples, d = mean(h - noisy) by channel over a window of m samples, and variance
+/// v' = mean |h - noisy|^2 - |d|^2 of one difference (summed over channels, so that changes of hue
+/// count), v = v' n / (n + 1) that of one sample:
+///   u   = v' / m                                  variance of d
+///   r   = recursive mean of d along the history, w its variance
+///   b^2 = the larger of max(0, |d|^2 - sudden_threshold u) and max(0, |r|^2 - noise_threshold w)
+///   s   = b^2 / (b^2 + its variance)              share worth subtracting: h' = h - s d (or r)
+///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 variance)
+/// and with k = v/e (capped):  out = (noisy + k h') / (1 + k), N_out = 1 + k: samples count by the
+/// error they leave, bias included, so that the spatial filter leans on what is right. Without a
+/// candidate, out = noisy and N = 1. `at_rest`: neither camera, objects nor lights have moved.
+/// The window keeps within the `footprint` (may be null) of the effect.
+///   reads noisy, `before` | writes `now`, `debug` (may be null) | halo of the window
+void blend_radiance(const Guides& guides, const Channels<float>& noisy,
+                    const HistorySources& sources, const Channels<float>* footprint,
+                    const RadianceBlendRule& rule, bool at_rest, const ComponentHistory& before,
+                    RadianceBlendScratch& scratch, WindowScratch& window, ComponentHistory& now,
+                    Channels<float>* debug);
+
+}  // namespace holdfast
