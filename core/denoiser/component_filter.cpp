@@ -30,6 +30,20 @@ constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-20f;
 
+/// The footprint of a window that must find what the filter's would blur: a third of its variance.
+const Channels<float>& sharpened_footprint(int height, Scratch& s) {
+  constexpr float kPrecision = 3.0f;
+  Channels<float>& out = s.filter.footprint;  // free until the filter runs
+  for_each_row(height, [&](int y) {
+    for (int c = 0; c < 3; ++c) {
+      const float* in = std::as_const(s.footprint)[c].row(y);
+      float* to = out[c].row(y);
+      for (int x = 0; x < out.width(); ++x) to[x] = kPrecision * in[x];
+    }
+  });
+  return out;
+}
+
 }  // namespace
 
 Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
@@ -160,11 +174,14 @@ void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
       blend_by_expected_error(input.frames.now, s.noisy, sources,
                               std::as_const(s.means)[kSampleVariance], recipe_.visibility_blend,
                               before, s.blend, s.window, now, debug);
-    else
+    else {
+      const Channels<float>* window = nullptr;
+      if (has_footprint_) window = &sharpened_footprint(input.frames.now.view.height, s);
       blend_radiance(
-          input.frames.now, s.noisy, sources, has_footprint_ ? &s.footprint : nullptr,
+          input.frames.now, s.noisy, sources, window,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
+    }
   } else {
     accumulate(input.frames.now, s.noisy, sources, recipe_.accumulation, before, now, debug);
   }

@@ -13,7 +13,6 @@ Recipe base(std::string name, Blending blending = Blending::kExponential) {
   recipe.blending = blending;
   // Reflections slide without a sign in their surface: the slightest difference counts.
   recipe.glossy_blend.sudden_threshold = 1.0f;
-  recipe.glossy_blend.window_step = 1;
   recipe.radiance_filter = {.levels = 4, .luminance_sigma = 4.0f};
   return recipe;
 }
