@@ -5,6 +5,7 @@
 #include "client/cli/study_sequence.h"
 #include "client/measure/comparison_text.h"
 #include "client/measure/reference_noise.h"
+#include "client/scenes/load.h"
 #include "client/sequence/sequence.h"
 #include "core/denoiser/recipe.h"
 
@@ -64,6 +65,7 @@ std::string scene_folder(const std::string& scene) {
 
 StudyResult run_study(const StudyOptions& options) {
   for (const std::string& recipe : options.recipes) find_recipe(recipe);
+  for (const RenderOptions& render : options.scenes) scenes::load_scene(render.scene);
   StudyResult study;
   for (RenderOptions render : options.scenes) {
     const std::string name = scene_folder(render.scene);

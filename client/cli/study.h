@@ -34,7 +34,7 @@ struct StudyResult {
 
 /// Renders each scene to OUT/SCENE/sequence, streams it through a server in this process with each
 /// recipe to OUT/SCENE/RECIPE, and compares with the references. Throws InputError for an unknown
-/// recipe before it starts, and as its steps do.
+/// recipe or scene before it starts, and as its steps do.
 StudyResult run_study(const StudyOptions& options);
 
 /// The name of a scene's folder: the scene's, or that of its JSON file without the ending.

@@ -42,7 +42,7 @@ inline constexpr const char* kEverywhere = "everywhere";
 ///   everywhere    all               all         spatial, clamp, paper: RMSE <= 1.005,
 ///                                               SSIM >= 0.995, on either mask
 ///
-/// The margins of shadows, glossy and occlusion are those that TRMV's comparisons show. A claim
+/// The bars of shadows, glossy and occlusion follow TRMV's comparisons. A claim
 /// whose recipe is missing is kNotRun; where a mask holds no pixel there is no claim. Variants of
 /// `reliable` (names that start with "reliable-") are none of the others.
 std::vector<Claim> evaluate_claims(const std::vector<ReportScene>& scenes);

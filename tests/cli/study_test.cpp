@@ -113,9 +113,24 @@ TEST_F(Study, ReuseKeepsSequencesOfTheSameSettingsAndRefusesOthers) {
   EXPECT_GT(std::filesystem::last_write_time(frame), written);
 }
 
-TEST_F(Study, RefusesAnUnknownRecipeBeforeItRenders) {
+TEST_F(Study, JudgesACutFromTheFramesOfItsEvents) {
+  ASSERT_EQ(study("cut", {"--recipes", "spatial", "--no-flip", "--quiet", "--speed", "3"}), 0)
+      << text;
+  const SequenceReader sequence(dir / "study/cut/sequence");
+  EXPECT_EQ(sequence.frame_indices().front(), 17);
+  EXPECT_EQ(sequence.frame_indices().back(), 96);
+  for (const std::int64_t event : {30, 60, 90}) {
+    EXPECT_FALSE(sequence.has_reference(event - 1));
+    EXPECT_TRUE(sequence.has_reference(event) && sequence.has_reference(event + 1));
+    EXPECT_EQ(sequence.read_frame(event).cut, event == 30) << "at its own speed";
+  }
+}
+
+TEST_F(Study, RefusesUnknownRecipesAndScenesBeforeItRenders) {
   EXPECT_EQ(study("fence", {"--recipes", "reliable,wrong"}), 2);
   EXPECT_NE(text.find("'wrong'"), text.npos) << text;
+  EXPECT_EQ(study("fence,nowhere"), 2);
+  EXPECT_NE(text.find("nowhere"), text.npos) << text;
   EXPECT_FALSE(std::filesystem::exists(dir / "study"));
   EXPECT_EQ(holdfast({"study", "-o", path("study")}), 2) << "what to study is not said";
 }
