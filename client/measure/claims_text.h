@@ -37,8 +37,8 @@ nlohmann::ordered_json claims_json(const std::vector<Claim>& claims);
 
 /// What an asterisk at a figure means.
 inline constexpr const char* kLimitedNote =
-    "* Two references differ by more than a tenth of the best RMSE here: small differences between "
-    "results are within their noise.";
+    "* Two references differ by more than a tenth of the best RMSE here: their noise adds to every "
+    "error, draws ratios towards 1, and hides small differences.";
 
 /// A table of the listed claims with the sentence of the others, as part of a page.
 std::string claims_html(const std::vector<Claim>& claims);

@@ -47,8 +47,8 @@ TEST(Markdown, HasARowForEachRecipeWithTheBestInBold) {
       "| `traditional` | 0.2000 | 0.8000 | 0.2000 | 0.8000 | 4.0 (1.00) |\n"
       "| `reliable` | **0.1000** | **0.9000** | **0.1000** | **0.9000** | 5.0 (1.25) |\n"
       "| references | 0.0200* | | | | |\n\n"
-      "\\* Two references differ by more than a tenth of the best RMSE here: small "
-      "differences between results are within their noise.\n");
+      "\\* Two references differ by more than a tenth of the best RMSE here: their noise adds to "
+      "every error, draws ratios towards 1, and hides small differences.\n");
 }
 
 TEST(Markdown, ListsTheClaimsFirst) {
