@@ -21,8 +21,8 @@ struct Options {
 void write_html(const Options& options, const measure::Comparison& result) {
   const auto name = std::filesystem::canonical(options.test).filename().string();
   measure::write_report(
-      options.html, "Holdfast: " + options.test + " against references",
-      {{options.reference, "", options.reference, {{name, options.test, result}}}});
+      options.html, {{options.reference, "", options.reference, {{name, options.test, result}}}},
+      {.title = "Holdfast: " + options.test + " against references"});
 }
 
 void run(const Options& options) {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/measure/report.h"
+#include "client/cli/study.h"
 
 namespace holdfast::cli {
 
@@ -25,31 +25,16 @@ struct DemoOptions {
   bool quiet = false;
 };
 
-/// One step of the demonstration and how long it took.
-struct DemoStep {
-  std::string name;
-  double seconds = 0;
-};
-
-struct DemoResult {
-  std::vector<measure::ReportScene> scenes;
-  std::vector<DemoStep> steps;  ///< in the order of work
-};
-
-/// Renders each scene to OUT/SCENE/sequence, streams it through a server in this process with each
-/// recipe to OUT/SCENE/RECIPE, compares with the references, and writes OUT/report.html,
+/// Studies the recipes on the scenes, with a reference for each frame, and writes OUT/report.html,
 /// OUT/png/*.png and OUT/demo.png, a strip of pictures of the first scene. Throws as its steps do.
-DemoResult run_demo(const DemoOptions& options);
+StudyResult run_demo(const DemoOptions& options);
 
 /// A table for each scene and layer: a line a recipe, RMSE, SSIM, FLIP and flicker over the image
 /// and over the effect.
 std::string demo_table(const std::vector<measure::ReportScene>& scenes);
 
-/// A line with the seconds of each step and their sum.
-std::string demo_times(const std::vector<DemoStep>& steps);
-
 /// {"scenes":{"fence":{"reliable":{"image":COMPARISON,"effect":COMPARISON}}},
 /// "seconds":{"render fence":40}} with COMPARISON as `holdfast compare --json` writes it.
-nlohmann::ordered_json demo_json(const DemoResult& result);
+nlohmann::ordered_json demo_json(const StudyResult& result);
 
 }  // namespace holdfast::cli

@@ -42,11 +42,11 @@ void add_demo(CLI::App& app) {
   command.callback([arguments] {
     DemoOptions& chosen = arguments->options;
     parse_image_size("option --size", arguments->size, chosen.width, chosen.height);
-    const DemoResult result = run_demo(chosen);
+    const StudyResult result = run_demo(chosen);
     if (!arguments->json.empty()) write_json_file(arguments->json, demo_json(result));
     if (chosen.quiet) return;
     std::printf("%s%sreport: %s\n", demo_table(result.scenes).c_str(),
-                demo_times(result.steps).c_str(), (chosen.out / "report.html").c_str());
+                steps_text(result.steps).c_str(), (chosen.out / "report.html").c_str());
   });
 }
 

@@ -40,24 +40,14 @@ std::string demo_table(const std::vector<measure::ReportScene>& scenes) {
   return table;
 }
 
-std::string demo_times(const std::vector<DemoStep>& steps) {
-  std::string line = "seconds: ";
-  double sum = 0;
-  for (const DemoStep& step : steps) {
-    line += step.name + " " + number_text(step.seconds, 1) + ", ";
-    sum += step.seconds;
-  }
-  return line + "in all " + number_text(sum, 1) + "\n";
-}
-
-nlohmann::ordered_json demo_json(const DemoResult& result) {
+nlohmann::ordered_json demo_json(const StudyResult& result) {
   nlohmann::ordered_json json;
   for (const measure::ReportScene& scene : result.scenes)
     for (const measure::ReportResult& recipe : scene.results)
       for (const Region region : {Region::kImage, Region::kEffect})
         json["scenes"][scene.name][recipe.name][region_name(region)] =
             comparison_json(recipe.comparison, region);
-  for (const DemoStep& step : result.steps) json["seconds"][step.name] = step.seconds;
+  for (const StudyStep& step : result.steps) json["seconds"][step.name] = step.seconds;
   return json;
 }
 

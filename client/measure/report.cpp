@@ -20,7 +20,9 @@ std::string options_html(const std::vector<NamedPicture>& pictures, const std::s
 }
 
 /// The slider: two pictures on top of each other, chosen by drop-down lists.
-std::string slider_html(const LayerPictures& layer) {
+///
+/// `source(name, picture, is_error)` is the address of a picture.
+std::string slider_html(const LayerPictures& layer, const auto& source) {
   const Picture& size = layer.pictures.front().picture;
   std::string html =
       "<div class=\"controls\"><label>left <select class=\"left\">" +
@@ -34,9 +36,9 @@ std::string slider_html(const LayerPictures& layer) {
       "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.1\" "
       "aria-label=\"Boundary between the pictures\"></figure><div class=\"store\" hidden>";
   for (const NamedPicture& picture : layer.pictures)
-    html += "<img data-name=\"" + escaped(picture.name) + "\" alt=\"\" src=\"" +
-            png_data_uri(picture.picture) + "\"><img data-name=\"" + escaped(picture.name) +
-            "\" data-error alt=\"\" src=\"" + png_data_uri(picture.error) + "\">";
+    html += "<img data-name=\"" + escaped(picture.name) + "\" alt=\"\" loading=\"lazy\" src=\"" +
+            source(picture, false) + "\"><img data-name=\"" + escaped(picture.name) +
+            "\" data-error alt=\"\" loading=\"lazy\" src=\"" + source(picture, true) + "\">";
   return html + "</div>";
 }
 
@@ -58,21 +60,28 @@ std::string legend_html(const ReportScene& scene) {
   std::string html = "<p class=\"legend\">";
   std::size_t line = 0;
   for (const ReportResult& result : scene.results)
-    html += "<span><i class=\"key c" + std::to_string(line++) + "\"></i>" + escaped(result.name) +
-            "</span>";
+    html +=
+        "<span><i class=\"key " + line_class(line++) + "\"></i>" + escaped(result.name) + "</span>";
   return html + "</p>";
 }
 
-void write_pngs(const std::filesystem::path& dir, const std::string& scene,
+/// The file of a picture within the folder of pictures.
+std::string png_name(const ReportScene& scene, const LayerPictures& layer,
+                     const NamedPicture& picture, bool is_error) {
+  return scene.name + "." + layer.layer + "." + picture.name + (is_error ? ".error.png" : ".png");
+}
+
+void write_pngs(const std::filesystem::path& dir, const ReportScene& scene,
                 const LayerPictures& layer) {
   for (const NamedPicture& picture : layer.pictures) {
-    const std::string stem = scene + "." + layer.layer + "." + picture.name;
-    write_png(dir / (stem + ".png"), picture.picture);
-    write_png(dir / (stem + ".error.png"), picture.error);
+    write_png(dir / png_name(scene, layer, picture, false), picture.picture);
+    write_png(dir / png_name(scene, layer, picture, true), picture.error);
   }
 }
 
-std::string scene_html(const ReportScene& scene, const std::filesystem::path& png_dir) {
+/// `links`: the folder of pictures as the page addresses it; empty = the page holds its pictures.
+std::string scene_html(const ReportScene& scene, const std::filesystem::path& png_dir,
+                       const std::string& links) {
   const auto pictures = scene_pictures(scene);
   std::string html = "<section><h2>" + escaped(scene.name) + "</h2><p>" + escaped(scene.caption) +
                      " Pictures: frame " + std::to_string(pictured_frame(scene)) +
@@ -81,29 +90,45 @@ std::string scene_html(const ReportScene& scene, const std::filesystem::path& pn
     html += "<button role=\"tab\">" + escaped(layer.layer) + "</button>";
   html += "</div>";
   for (const LayerPictures& layer : pictures) {
-    if (!png_dir.empty()) write_pngs(png_dir, scene.name, layer);
+    if (!png_dir.empty()) write_pngs(png_dir, scene, layer);
+    const auto source = [&](const NamedPicture& picture, bool is_error) {
+      return links.empty() ? png_data_uri(is_error ? picture.error : picture.picture)
+                           : escaped(links + "/" + png_name(scene, layer, picture, is_error));
+    };
     const auto& compared = scene.results.front().comparison.layers;
     std::size_t index = 0;
     while (compared[index].name != layer.layer) ++index;
-    html += "<div class=\"layer\"><h3>" + escaped(layer.layer) + "</h3>" + slider_html(layer) +
-            table_html(scene, index) + legend_html(scene) + "<div class=\"plots\">" +
-            plot_html(scene, index, false) + plot_html(scene, index, true) + "</div></div>";
+    html += "<div class=\"layer\"><h3>" + escaped(layer.layer) + "</h3>" +
+            slider_html(layer, source) + table_html(scene, index) + legend_html(scene) +
+            "<div class=\"plots\">" + plot_html(scene, index, false) +
+            plot_html(scene, index, true) + "</div></div>";
   }
   return html + "</section>";
 }
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const std::string& title,
-                  const std::vector<ReportScene>& scenes, const std::filesystem::path& png_dir) {
+double core_over_traditional(const ReportScene& scene, const ReportResult& result) {
+  for (const ReportResult& other : scene.results)
+    if (other.name == "traditional") return result.core_ms / other.core_ms;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void write_report(const std::filesystem::path& file, const std::vector<ReportScene>& scenes,
+                  const ReportOptions& options) {
+  const std::filesystem::path& png_dir = options.png_dir;
   if (!png_dir.empty()) std::filesystem::create_directories(png_dir);
+  const std::string links = options.link_pictures && !png_dir.empty()
+                                ? png_dir.lexically_proximate(file.parent_path()).generic_string()
+                                : "";
   std::ofstream stream(file);
   stream
       << "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width,initial-scale=1\"><title>"
-      << escaped(title) << "</title><style>" << kReportStyle << "</style></head><body><main><h1>"
-      << escaped(title) << "</h1>" << kReportIntroduction;
-  for (const ReportScene& scene : scenes) stream << scene_html(scene, png_dir);
+      << escaped(options.title) << "</title><style>" << kReportStyle
+      << "</style></head><body><main><h1>" << escaped(options.title) << "</h1>"
+      << kReportIntroduction << options.top_html;
+  for (const ReportScene& scene : scenes) stream << scene_html(scene, png_dir, links);
   stream << "</main><script>" << kReportScript << "</script></body></html>\n";
   if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
 }

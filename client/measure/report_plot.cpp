@@ -83,13 +83,15 @@ std::string plot_svg(const std::string& title, const std::vector<PlotLine>& line
       format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", kWidth, kHeight) +
       escaped(title) + "\">" + grid(axes);
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    svg += format("<polyline class=\"line c%zu\" points=\"", k);
+    svg += "<polyline class=\"line " + line_class(k) + "\" points=\"";
     for (const auto& point : lines[k].points)
       svg += format("%.1f,%.1f ", axes.x(static_cast<double>(point.frame)), axes.y(point.rmse));
     svg += "\"><title>" + escaped(lines[k].name) + "</title></polyline>";
   }
   return svg + "</svg>";
 }
+
+std::string line_class(std::size_t line) { return "c" + std::to_string(line % kLineColors); }
 
 std::string escaped(const std::string& text) {
   std::string out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,14 @@ struct PlotLine {
 };
 
 /// RMSE over frames as an inline SVG: one polyline a result, with axes, ticks and a title for each
-/// line. Line k has the class "line c<k>", which the page's style colours. Empty without any point.
+/// line. Line k has the classes "line" and line_class(k). Empty without any point.
 std::string plot_svg(const std::string& title, const std::vector<PlotLine>& lines);
+
+/// Colours that the page's style knows; further lines begin anew.
+inline constexpr std::size_t kLineColors = 12;
+
+/// The class of line `line` and of its key, which the page's style colours.
+std::string line_class(std::size_t line);
 
 /// Text made safe for HTML content and attributes.
 std::string escaped(const std::string& text);

@@ -1,9 +1,11 @@
 #include "client/measure/report_table.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "client/measure/comparison_text.h"
+#include "client/measure/reference_noise.h"
 #include "client/measure/report_plot.h"
 
 namespace holdfast::measure {
@@ -51,21 +53,38 @@ std::string cells(const ReportScene& scene, const ReportResult& result, std::siz
   return html;
 }
 
+/// What the references themselves are off by, and whether that matters; empty if not measured.
+std::string references_note(const ReportScene& scene, std::size_t layer) {
+  const std::string& name = scene.results.front().comparison.layers[layer].name;
+  std::string text;
+  for (const Region region : {Region::kImage, Region::kEffect})
+    if (const auto check = check_references(scene, name, region))
+      text += std::string(text.empty() ? "" : "; ") + number_text(check->noise, 5) +
+              (region == Region::kImage ? " over the image" : " where the effect moves") +
+              (check->sufficient ? "" : ", too much beside the best RMSE to rank the best results");
+  return text.empty() ? ""
+                      : "<p class=\"note\">RMSE of the references themselves: " + text + ".</p>";
+}
+
 }  // namespace
 
 std::string table_html(const ReportScene& scene, std::size_t layer) {
+  const bool timed = std::any_of(scene.results.begin(), scene.results.end(),
+                                 [](const ReportResult& r) { return !std::isnan(r.core_ms); });
   std::string html =
       "<div class=\"wide\"><table><thead><tr><th></th><th colspan=\"5\">whole image</th>"
-      "<th colspan=\"5\">where the effect moves</th></tr><tr><th>result</th>";
+      "<th colspan=\"5\">where the effect moves</th>" +
+      std::string(timed ? "<th></th>" : "") + "</tr><tr><th>result</th>";
   for (int region = 0; region < 2; ++region)
     for (const Column& column : kColumns) html += std::string("<th>") + column.name + "</th>";
-  html += "</tr></thead><tbody>";
+  html += std::string(timed ? "<th>core ms</th>" : "") + "</tr></thead><tbody>";
   std::size_t line = 0;
   for (const ReportResult& result : scene.results)
-    html += "<tr><th><i class=\"key c" + std::to_string(line++) + "\"></i>" + escaped(result.name) +
+    html += "<tr><th><i class=\"key " + line_class(line++) + "\"></i>" + escaped(result.name) +
             "</th>" + cells(scene, result, layer, Region::kImage) +
-            cells(scene, result, layer, Region::kEffect) + "</tr>";
-  html += "</tbody></table></div>";
+            cells(scene, result, layer, Region::kEffect) +
+            (timed ? "<td>" + number_text(result.core_ms, 2) + "</td>" : "") + "</tr>";
+  html += "</tbody></table></div>" + references_note(scene, layer);
   if (scene.results.front().comparison.layers[layer].effect.judged_pixels == 0)
     html += "<p class=\"note\">No pixel of this layer moves by more than the threshold.</p>";
   return html;

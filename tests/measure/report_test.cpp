@@ -1,5 +1,6 @@
 #include "client/measure/report.h"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -70,7 +71,8 @@ int occurrences(const std::string& text, const std::string& part) {
 
 TEST(Report, IsOnePageThatLoadsNothing) {
   const test::TempDir dir;
-  write_report(dir / "report.html", "Title & more", {make_scene(dir.path())}, dir / "png");
+  write_report(dir / "report.html", {make_scene(dir.path())},
+               {.title = "Title & more", .top_html = "<p>top</p>", .png_dir = dir / "png"});
   const std::string page = read(dir / "report.html");
   EXPECT_EQ(page.find("http"), page.npos);
   EXPECT_EQ(page.find("<link"), page.npos);
@@ -79,9 +81,43 @@ TEST(Report, IsOnePageThatLoadsNothing) {
   EXPECT_EQ(occurrences(page, "data:image/png;base64,"), 8);
   EXPECT_EQ(occurrences(page, "<svg"), 2);
   EXPECT_NE(page.find("<h1>Title &amp; more</h1>"), page.npos);
+  EXPECT_NE(page.find("<p>top</p><section>"), page.npos);
   EXPECT_NE(page.find("<h2>a &lt;scene&gt;</h2>"), page.npos);
   EXPECT_NE(page.find("frame 1."), page.npos);
   EXPECT_TRUE(std::filesystem::exists(dir / "png/a <scene>.light0.visibility.rough.error.png"));
+}
+
+TEST(Report, LinksItsPicturesIfAskedTo) {
+  const test::TempDir dir;
+  write_report(dir / "report.html", {make_scene(dir.path())},
+               {.title = "Title", .png_dir = dir / "pictures", .link_pictures = true});
+  const std::string page = read(dir / "report.html");
+  EXPECT_EQ(page.find("data:"), page.npos);
+  EXPECT_EQ(occurrences(page, "src=\"pictures/a &lt;scene&gt;.light0.visibility."), 8);
+}
+
+TEST(Report, TableTellsCostAndNoiseOfReferencesWhereKnown) {
+  const test::TempDir dir;
+  ReportScene scene = make_scene(dir.path());
+  EXPECT_EQ(table_html(scene, 0).find("core ms"), std::string::npos);
+  scene.results[0].core_ms = 1.5;
+  scene.results.pop_back();
+  scene.reference_noise = {{"light0.visibility", 0.001, 0.1}};
+  const std::string table = table_html(scene, 0);
+  EXPECT_NE(table.find("<th>core ms</th>"), table.npos);
+  EXPECT_NE(table.find("<td>1.50</td></tr>"), table.npos);
+  EXPECT_NE(
+      table.find("RMSE of the references themselves: 0.00100 over the image; 0.10000 where the "
+                 "effect moves, too much"),
+      table.npos)
+      << table;
+}
+
+TEST(Report, CostIsARatioToTraditional) {
+  ReportScene scene{"s", "", "", {{"traditional", "", {}, 2.0}, {"reliable", "", {}, 2.5}}};
+  EXPECT_EQ(core_over_traditional(scene, scene.results[1]), 1.25);
+  scene.results[0].name = "svgf";
+  EXPECT_TRUE(std::isnan(core_over_traditional(scene, scene.results[1])));
 }
 
 TEST(Report, BestOfEachColumnIsBold) {
