@@ -25,6 +25,10 @@ struct LightPlanes {
   const Plane *unshadowed, *visibility, *distance, *sample;
 };
 
+double share(std::int64_t part, std::int64_t whole) {
+  return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(whole, 1));
+}
+
 /// What was seen of one light under one reading of its matrix.
 struct Counts {
   std::int64_t lit = 0;        ///< pixels that the light reaches, by `unshadowed`
@@ -39,10 +43,7 @@ struct Counts {
   std::int64_t off_light = 0;  ///< of them: outside [0,1]^2
   bool fractions = false;      ///< visibility has other values than 0 and 1
 
-  double misfit() const {
-    return static_cast<double>(behind + beyond + floating) /
-           static_cast<double>(std::max<std::int64_t>(lit + blocked, 1));
-  }
+  double misfit() const { return share(behind + beyond + floating, lit + blocked); }
 };
 
 class LightCount {
@@ -83,8 +84,8 @@ class LightCount {
   }
 
   void add_blocker(const Seen& frame, const LightPlanes& planes, int x, int y, double distance) {
-    const glm::dvec2 uv(double(planes.sample->channel(0).at(x, y)),
-                        double(planes.sample->channel(1).at(x, y)));
+    const glm::dvec2 uv(static_cast<double>(planes.sample->channel(0).at(x, y)),
+                        static_cast<double>(planes.sample->channel(1).at(x, y)));
     ++counts_.samples;
     if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) {
       ++counts_.off_light;
@@ -125,36 +126,39 @@ Counts count(const std::vector<Pair>& pairs, const Light& light, const Reading& 
 bool report_share(const std::string& thing, const char* mistake, const char* rule, const char* what,
                   std::int64_t bad, std::int64_t total, double limit, Report& report) {
   if (total < kFewSamples) return false;
-  const double share = static_cast<double>(bad) / static_cast<double>(total);
-  if (share <= limit) return false;
+  const double part = share(bad, total);
+  if (part <= limit) return false;
   report.findings.push_back({thing, mistake, rule,
-                             percent(share) + " of " + std::to_string(total) + " pixels " + what,
-                             total, share});
+                             percent(part) + " of " + std::to_string(total) + " pixels " + what,
+                             total, part});
   return true;
 }
 
-bool report_matrix(const Light& light, const Counts& given, const Counts& inverse, Report& report) {
-  constexpr double kMisfit = 0.2;
+/// Leaves in `counts` what the later rules are judged by.
+void report_matrix(const Light& light, const Counts& inverse, Counts& counts, Report& report) {
+  constexpr double kMisfit = 0.2, kFits = 0.05;
   const std::string thing = "lights." + std::to_string(light.id);
-  if (given.lit + given.blocked < kFewSamples) return false;
-  if (given.misfit() > kMisfit && inverse.misfit() < 0.5 * given.misfit()) {
-    report.findings.push_back(
-        {thing, "light-inverse", "must be world_from_light",
-         percent(given.misfit()) + " of " + std::to_string(given.lit + given.blocked) +
-             " pixels and blockers cannot be where they are, with the inverse matrix " +
-             percent(inverse.misfit()),
-         given.lit + given.blocked, given.misfit()});
-    return true;
+  const std::int64_t total = counts.lit + counts.blocked;
+  if (total < kFewSamples) return;
+  if (counts.misfit() > kMisfit && inverse.misfit() < kFits) {
+    report.findings.push_back({thing, "light-inverse", "must be world_from_light",
+                               percent(counts.misfit()) + " of " + std::to_string(total) +
+                                   " pixels and blockers cannot be where they are, with the "
+                                   "inverse matrix " +
+                                   percent(inverse.misfit()),
+                               total, counts.misfit()});
+    counts = inverse;
+  } else if (report_share(thing, "light-backwards", "must emit along its local -Z",
+                          "that it lights are behind it", counts.behind, counts.lit, 0.5, report)) {
+    counts.beyond = counts.floating = 0;  // its samples are mirrored too
   }
-  report_share(thing, "light-backwards", "must emit along its local -Z",
-               "that it lights are behind it", given.behind, given.lit, 0.5, report);
-  return false;
 }
 
 void report_blockers(const std::string& light, const Counts& c, Report& report) {
-  report_share(light + ".sampleU/V", "sample-range", "must be in [0,1]^2", "have another sample",
-               c.off_light, c.samples, 0.001, report);
-  if (!report_share(light + ".blockerDistance", "blocker-beyond-light",
+  const bool off_light = report_share(light + ".sampleU/V", "sample-range", "must be in [0,1]^2",
+                                      "have another sample", c.off_light, c.samples, 0.001, report);
+  if (!off_light &&
+      !report_share(light + ".blockerDistance", "blocker-beyond-light",
                     "must be metres from the surface, less than to the light sample",
                     "have a blocker beyond the light sample", c.beyond, c.blocked, 0.02, report))
     report_share(light + ".blockerDistance", "blocker-floating",
@@ -164,8 +168,7 @@ void report_blockers(const std::string& light, const Counts& c, Report& report) 
                  c.floating, c.blocked, 0.3, report);
   if (c.fractions) return;  // of several samples one may be blocked, and their mean be anything
   constexpr double kFew = 0.05;
-  if (c.bright > kFew * static_cast<double>(c.blocked) &&
-      c.dark > kFew * static_cast<double>(c.free)) {
+  if (share(c.bright, c.blocked) > kFew && share(c.dark, c.free) > kFew) {
     report_share(light + ".visibility", "visibility-inverted",
                  "must be 1 where the light is seen and 0 where it is blocked", "have the opposite",
                  c.bright + c.dark, c.blocked + c.free, kFew, report);
@@ -187,7 +190,7 @@ void check_lights(const std::vector<Pair>& pairs, const std::vector<Light>& ligh
     const std::size_t first = report.findings.size();
     Counts counts = count(pairs, light, reading, false);
     const Counts inverse = count(pairs, light, reading, true);
-    if (report_matrix(light, counts, inverse, report)) counts = inverse;
+    report_matrix(light, inverse, counts, report);
     report_blockers(name, counts, report);
     if (report.findings.size() > first)
       report.add(name, Verdict::kWrong, findings_since(report, first));

@@ -13,9 +13,17 @@ bool is_affine(const glm::dmat4& m) {
   return near(m[0][3], 0) && near(m[1][3], 0) && near(m[2][3], 0) && near(m[3][3], 1);
 }
 
-/// The last row of a projection is (0, 0, -w, 0), perspective along -Z, or (0, 0, 0, 1).
+/// The last row is (0, 0, -w, 0): perspective along -Z.
+bool is_perspective(const glm::dmat4& m) {
+  return near(m[0][3], 0) && near(m[1][3], 0) && m[2][3] < 0 && near(m[3][3], 0);
+}
+
+/// A projection is perspective or affine. The transpose of a perspective may look like one of
+/// another scale; the usual scale, w = 1, tells them apart.
 bool is_projection(const glm::dmat4& m) {
-  return is_affine(m) || (near(m[0][3], 0) && near(m[1][3], 0) && m[2][3] < 0 && near(m[3][3], 0));
+  const glm::dmat4 other = glm::transpose(m);
+  const bool other_is_usual = is_perspective(other) && near(other[2][3], -1);
+  return is_affine(m) || (is_perspective(m) && (near(m[2][3], -1) || !other_is_usual));
 }
 
 /// How many matrices have their form, and how many would have it transposed.

@@ -21,28 +21,36 @@ constexpr std::array<DirectionReading, 4> kReadings{
      {true, false, "direction-view-space", "view space"},
      {true, true, "direction-view-space-reversed", "view space with the opposite sign"}}};
 
+double share(std::int64_t part, std::int64_t whole) {
+  return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(whole, 1));
+}
+
 struct Counts {
-  std::int64_t rays = 0, not_unit = 0, hits = 0, floating = 0;
-  std::array<std::int64_t, kReadings.size()> below{};  ///< the horizon, under each reading
+  std::int64_t rays = 0, not_unit = 0, hits = 0;
+  // Under each reading:
+  std::array<std::int64_t, kReadings.size()> below{};     ///< rays below the horizon
+  std::array<std::int64_t, kReadings.size()> floating{};  ///< hits that would hide what is shown
+
+  double misfit(std::size_t i) const { return share(below[i], rays) + share(floating[i], hits); }
 };
 
 void add_ray(const Seen& frame, const glm::dmat3& world_from_view, const Plane* distance, int x,
              int y, glm::dvec3 d, Counts& counts) {
   const double length = glm::length(d);
+  const glm::dvec3 n = frame.normal(x, y), surface = frame.position(x, y);
   if (!(length > 0) || !std::isfinite(length)) return;
+  if (glm::dot(n, surface) > 0) return;  // faces away, which check_normals reports
   ++counts.rays;
   counts.not_unit += std::abs(length - 1) > 1e-2 ? 1 : 0;
-  d /= length;
-  const glm::dvec3 n = frame.normal(x, y);
+  const auto t = static_cast<double>(distance ? distance->channel(0).at(x, y) : -1.0f);
+  const bool hit = t >= 0 && std::isfinite(t);
+  counts.hits += hit ? 1 : 0;
   for (std::size_t i = 0; i < kReadings.size(); ++i) {
-    const glm::dvec3 world =
-        (kReadings[i].reversed ? -1.0 : 1.0) * (kReadings[i].view ? world_from_view * d : d);
+    const glm::dvec3 unit = (kReadings[i].reversed ? -d : d) / length;
+    const glm::dvec3 world = kReadings[i].view ? world_from_view * unit : unit;
     counts.below[i] += glm::dot(world, n) < -0.02 ? 1 : 0;
+    counts.floating[i] += hit && floats(frame, surface + t * world) ? 1 : 0;
   }
-  const float t = distance ? distance->channel(0).at(x, y) : -1.0f;
-  if (!(t >= 0) || !std::isfinite(t)) return;
-  ++counts.hits;
-  counts.floating += floats(frame, frame.position(x, y) + double(t) * d) ? 1 : 0;
 }
 
 Counts count(const std::vector<Pair>& pairs, const Reading& reading, PlaneKind directions,
@@ -68,10 +76,6 @@ Counts count(const std::vector<Pair>& pairs, const Reading& reading, PlaneKind d
   return counts;
 }
 
-double share(std::int64_t part, std::int64_t whole) {
-  return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(whole, 1));
-}
-
 /// True if the directions are wrong; then hits along them say nothing.
 bool report_directions(const std::string& thing, const Counts& c, Report& report) {
   if (const double bad = share(c.not_unit, c.rays); bad > 0.01) {
@@ -83,20 +87,23 @@ bool report_directions(const std::string& thing, const Counts& c, Report& report
   }
   constexpr double kFew = 0.05;  // shading normals let some through
   const double below = share(c.below[0], c.rays);
-  if (below <= kFew) return false;
   std::string mistake = "direction-below-horizon", better;
-  double least = 0.5 * below;
+  double least = 0.25 * c.misfit(0);
   for (std::size_t i = 1; i < kReadings.size(); ++i)
-    if (const double other = share(c.below[i], c.rays); other < least) {
-      least = other;
+    if (c.misfit(0) > kFew && c.misfit(i) < least) {
+      least = c.misfit(i);
       mistake = kReadings[i].mistake;
-      better = std::string("; with ") + kReadings[i].found + " " + percent(other);
+      better = std::string("; with ") + kReadings[i].found + " " +
+               percent(share(c.below[i], c.rays)) + " and " + percent(share(c.floating[i], c.hits));
     }
-  report.findings.push_back({thing, mistake,
-                             "must be in world space, from the surface to where light comes from",
-                             percent(below) + " of " + std::to_string(c.rays) +
-                                 " directions go below the horizon of their normal" + better,
-                             c.rays, below});
+  if (below <= kFew && better.empty()) return false;
+  report.findings.push_back(
+      {thing, mistake, "must be in world space, from the surface to where light comes from",
+       percent(below) + " of " + std::to_string(c.rays) +
+           " directions go below the horizon of their normal, and " +
+           percent(share(c.floating[0], c.hits)) + " of " + std::to_string(c.hits) +
+           " hits are where the frame shows nothing so near" + better,
+       c.rays, std::min(c.misfit(0), 1.0)});
   return true;
 }
 
@@ -112,7 +119,7 @@ void check_plane(const std::vector<Pair>& pairs, const Reading& reading, PlaneKi
     return;
   }
   const bool wrong = report_directions(plane_name({kind, {}}) + ".X/Y/Z", counts, report);
-  const double floating = share(counts.floating, counts.hits);
+  const double floating = share(counts.floating[0], counts.hits);
   if (!wrong && counts.hits >= kFewSamples && floating > 0.3)
     report.findings.push_back({"glossy.hitDistance", "hit-floating",
                                "must be metres from the surface to what was hit",
