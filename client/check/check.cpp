@@ -46,6 +46,7 @@ Report check_frames(const Source& source) {
   }
   values.report(report);
   check_matrices(tables, frames, report);
+  check_ids(tables, frames, report);
 
   const std::vector<Pair> far = far_pairs(frames, stations), near = near_pairs(frames, stations);
   const Reading reading = check_geometry(far, report);

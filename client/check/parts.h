@@ -19,6 +19,9 @@ struct Tables {
 /// matrices of all frames. Puts them right in `frames`, whose positions are those of `all`.
 void check_matrices(const std::vector<Tables>& all, Snapshots& frames, Report& report);
 
+/// Ids that are no ids: scaled or copied from reals, or unknown to the tables.
+void check_ids(const std::vector<Tables>& all, const Snapshots& frames, Report& report);
+
 /// Camera, depth, normals and jitter: which reading of them makes earlier frames and normals fit.
 /// Returns the reading that later parts use.
 Reading check_geometry(const std::vector<Pair>& pairs, Report& report);

@@ -1,3 +1,4 @@
+#include <bit>
 #include <limits>
 
 #include "tests/check/checked.h"
@@ -54,13 +55,27 @@ TEST(ValueMistakes, VisibilityAndRoughnessInPercentAreNamed) {
   });
 }
 
+TEST(ValueMistakes, IdsThatAreNoIdsAreNamed) {
+  const auto expect_ids = [](const std::string& mistake, auto change) {
+    expect_finding(room(), "objectId", mistake, [&](Frame& f) {
+      const auto ids = f.planes.find({PlaneKind::kObjectId, {}})->ids();
+      for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) ids.at(x, y) = change(ids.at(x, y));
+    });
+  };
+  expect_ids("id-saturated", [](std::uint32_t) { return 0xFFFFFFFFu; });
+  expect_ids("id-float-bits",
+             [](std::uint32_t id) { return std::bit_cast<std::uint32_t>(float(id)); });
+  expect_ids("id-unknown", [](std::uint32_t) { return 12u; });
+}
+
 TEST(ValueMistakes, TheReportIsReadableByMachines) {
   Sequence bad = room().copy();
   for (Frame& f : bad.frames) f.camera.clip_from_view[1][1] *= -1;
   const auto json = report_json(bad.check());
   EXPECT_EQ(json["frames"], 4);
-  EXPECT_EQ(json["checks"][2]["check"], "camera");
-  EXPECT_EQ(json["checks"][2]["verdict"], "wrong");
+  EXPECT_EQ(json["checks"][3]["check"], "camera");
+  EXPECT_EQ(json["checks"][3]["verdict"], "wrong");
   ASSERT_EQ(json["findings"].size(), 1u);
   EXPECT_EQ(json["findings"][0]["mistake"], "clip-flipped-y");
   for (const char* key : {"thing", "rule", "evidence"})
