@@ -22,5 +22,6 @@ void add_compare(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_render(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_show(CLI::App& app);
 
 }  // namespace holdfast::cli

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   add_demo(app);
   add_render(app);
   add_replay(app);
+  add_show(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
