@@ -104,8 +104,8 @@ Finding finding(const Change& change, const Mistake& mistake) {
   return {mistake.thing, mistake.name, mistake.rule, evidence(change, mistake), c.samples, c.share};
 }
 
-/// The reading with the most gain over `from` among those that are clear, by one mistake more or,
-/// where none helps, by two.
+/// The reading with the most gain among those that are clear, by one mistake more or, where none
+/// makes everything fit, by two.
 class Search {
  public:
   explicit Search(const std::vector<Pair>& pairs)
@@ -133,7 +133,7 @@ class Search {
     };
     const auto& mistakes = geometry_mistakes();
     for (const Mistake& one : mistakes) consider({&one});
-    if (steps.empty() && fits_badly())
+    if (fits_badly(steps.empty() ? residuals_ : best_residuals))
       for (const Mistake& one : mistakes)
         for (const Mistake* two = &one + 1; two != mistakes.data() + mistakes.size(); ++two)
           if (std::string_view(one.thing) != two->thing) consider({&one, two});
@@ -156,7 +156,10 @@ class Search {
   std::int64_t normal_samples() const { return samples(residuals_.normal); }
 
  private:
-  bool fits_badly() const { return depth() > kDepthMisfit || normal() > kNormalMisfit; }
+  static bool fits_badly(const Residuals& residuals) {
+    return median_residual(residuals.depth) > kDepthMisfit ||
+           median_residual(residuals.normal) > kNormalMisfit;
+  }
 
   const std::vector<Pair>& pairs_;
   Reading reading_;

@@ -136,11 +136,11 @@ bool report_share(const std::string& thing, const char* mistake, const char* rul
 
 /// Leaves in `counts` what the later rules are judged by.
 void report_matrix(const Light& light, const Counts& inverse, Counts& counts, Report& report) {
-  constexpr double kMisfit = 0.2, kFits = 0.05;
+  constexpr double kMisfit = 0.04, kFits = 0.1;  // kFits as part of the misfit
   const std::string thing = "lights." + std::to_string(light.id);
   const std::int64_t total = counts.lit + counts.blocked;
   if (total < kFewSamples) return;
-  if (counts.misfit() > kMisfit && inverse.misfit() < kFits) {
+  if (counts.misfit() > kMisfit && inverse.misfit() < kFits * counts.misfit()) {
     report.findings.push_back({thing, "light-inverse", "must be world_from_light",
                                percent(counts.misfit()) + " of " + std::to_string(total) +
                                    " pixels and blockers cannot be where they are, with the "
