@@ -1,29 +1,13 @@
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
 #include "client/cli/command.h"
+#include "client/cli/frame_range.h"
 #include "client/cli/json_file.h"
 #include "client/cli/replay.h"
-#include "core/frame/error.h"
 
 namespace holdfast::cli {
 namespace {
-
-/// "A-B" or "A": frame indices, both included.
-void read_range(const std::string& text, ReplayOptions& options) {
-  const char* const end = text.data() + text.size();
-  auto [next, error] = std::from_chars(text.data(), end, options.first);
-  options.last = options.first;
-  bool good = error == std::errc();
-  if (good && next != end) {
-    good = *next == '-';
-    const auto second = std::from_chars(next + (good ? 1 : 0), end, options.last);
-    good = good && second.ec == std::errc() && second.ptr == end;
-  }
-  if (!good || options.first > options.last)
-    throw InputError("--frames", "must be A-B with A <= B, or one index", "\"" + text + "\"");
-}
 
 void print(const ReplayResult& result, const ReplayOptions& options) {
   const auto json = replay_json(result);
@@ -65,7 +49,9 @@ void add_replay(CLI::App& app) {
   command.add_flag("--quiet", options.quiet, "no progress, no summary");
   command.add_option("--json", args->json, "file for the machine-readable result");
   command.callback([args] {
-    if (!args->frames.empty()) read_range(args->frames, args->options);
+    const FrameRange range = frame_range(args->frames);
+    args->options.first = range.first;
+    args->options.last = range.last;
     const ReplayResult result = replay_sequence(args->options);
     if (!args->json.empty()) write_json_file(args->json, replay_json(result));
     if (!args->options.quiet) print(result, args->options);

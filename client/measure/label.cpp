@@ -37,6 +37,36 @@ constexpr std::array<Glyph, 26> kLetters{{
     {0x00, 0x00, 0x1F, 0x02, 0x04, 0x08, 0x1F, 0x00},  // z
 }};
 
+constexpr std::array<Glyph, 10> kDigits{{
+    {0x0E, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0E, 0x00},  // 0
+    {0x04, 0x0C, 0x04, 0x04, 0x04, 0x04, 0x0E, 0x00},  // 1
+    {0x0E, 0x11, 0x01, 0x06, 0x08, 0x10, 0x1F, 0x00},  // 2
+    {0x0E, 0x11, 0x01, 0x06, 0x01, 0x11, 0x0E, 0x00},  // 3
+    {0x02, 0x06, 0x0A, 0x12, 0x1F, 0x02, 0x02, 0x00},  // 4
+    {0x1F, 0x10, 0x1E, 0x01, 0x01, 0x11, 0x0E, 0x00},  // 5
+    {0x06, 0x08, 0x10, 0x1E, 0x11, 0x11, 0x0E, 0x00},  // 6
+    {0x1F, 0x01, 0x02, 0x04, 0x08, 0x08, 0x08, 0x00},  // 7
+    {0x0E, 0x11, 0x11, 0x0E, 0x11, 0x11, 0x0E, 0x00},  // 8
+    {0x0E, 0x11, 0x11, 0x0F, 0x01, 0x02, 0x0C, 0x00},  // 9
+}};
+constexpr Glyph kDot{0x00, 0x00, 0x00, 0x00, 0x00, 0x0C, 0x0C, 0x00};
+constexpr Glyph kComma{0x00, 0x00, 0x00, 0x00, 0x00, 0x0C, 0x04, 0x08};
+constexpr Glyph kMinus{0x00, 0x00, 0x00, 0x1F, 0x00, 0x00, 0x00, 0x00};
+constexpr Glyph kPercent{0x18, 0x19, 0x02, 0x04, 0x08, 0x13, 0x03, 0x00};
+
+/// The form of a letter; null for a space and for what there is no form of.
+const Glyph* glyph_of(char letter) {
+  if (letter >= 'a' && letter <= 'z') return &kLetters[static_cast<std::size_t>(letter - 'a')];
+  if (letter >= '0' && letter <= '9') return &kDigits[static_cast<std::size_t>(letter - '0')];
+  switch (letter) {
+    case '.': return &kDot;
+    case ',': return &kComma;
+    case '-': return &kMinus;
+    case '%': return &kPercent;
+    default: return nullptr;
+  }
+}
+
 void fill(Picture& picture, int left, int top, int size) {
   for (int y = top; y < top + size; ++y)
     for (int x = left; x < left + size; ++x)
@@ -53,13 +83,11 @@ int text_width(std::string_view text, int scale) {
 
 void draw_text(Picture& picture, int x, int y, std::string_view text, int scale) {
   for (const char letter : text) {
-    if (letter >= 'a' && letter <= 'z') {
-      const Glyph& glyph = kLetters[static_cast<std::size_t>(letter - 'a')];
-      for (int row = 0; row < kGlyphHeight; ++row)
-        for (int column = 0; column < kGlyphWidth; ++column)
-          if (glyph[static_cast<std::size_t>(row)] >> (kGlyphWidth - 1 - column) & 1)
-            fill(picture, x + column * scale, y + row * scale, scale);
-    }
+    const Glyph* glyph = glyph_of(letter);
+    for (int row = 0; glyph && row < kGlyphHeight; ++row)
+      for (int column = 0; column < kGlyphWidth; ++column)
+        if ((*glyph)[static_cast<std::size_t>(row)] >> (kGlyphWidth - 1 - column) & 1)
+          fill(picture, x + column * scale, y + row * scale, scale);
     x += (kGlyphWidth + 1) * scale;
   }
 }

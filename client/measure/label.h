@@ -13,7 +13,8 @@ inline constexpr int kGlyphHeight = 8;  ///< pixels at scale 1; letters stand on
 int text_width(std::string_view text, int scale);
 
 /// Writes `text` in white, with its top left corner at (x, y), each pixel of a letter `scale`
-/// pixels large. Knows small letters; anything else is a space. What lies outside is left out.
+/// pixels large. Knows small letters, digits and . , - %; anything else is a space. What lies
+/// outside is left out.
 void draw_text(Picture& picture, int x, int y, std::string_view text, int scale);
 
 }  // namespace holdfast::measure

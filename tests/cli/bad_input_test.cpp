@@ -170,8 +170,8 @@ TEST_F(BadInput, WrongArgumentsEndWithTwo) {
   expect(2, {"replay"}, {"DIR"});
   expect(2, {"demo"}, {"--output"});
   expect(2, {"demo", "-o", path("demo"), "--scenes", "castle", "--quiet"}, {"castle"});
-  expect(0, {"--help"}, {"render", "replay", "compare", "demo"});
-  for (const char* command : {"render", "replay", "compare", "demo"})
+  expect(0, {"--help"}, {"render", "replay", "compare", "demo", "check", "show"});
+  for (const char* command : {"render", "replay", "compare", "demo", "check", "show"})
     expect(0, {command, "--help"}, {"--json", "--quiet"});
 }
 
