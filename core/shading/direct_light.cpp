@@ -12,7 +12,8 @@
 namespace holdfast {
 namespace {
 
-constexpr double kLeastDistance = 1e-6;  // metres, of a point light
+constexpr double kLeastDistance = 1e-6;   // metres, of a point light
+constexpr double kLeastSunRadius = 1e-4;  // tangent; a smaller sun is a single direction
 
 /// Corners of the regular polygon whose area is the unit circle's.
 template <class T>
@@ -119,7 +120,7 @@ PlacedLight<T> place_light(const Light& light, const glm::dmat4& frame_from_ligh
   const glm::dmat3 half = axes * light_half_axes(light);
   const bool is_far = light.shape == LightShape::kDirectional;
   out.shape = light.shape;
-  out.is_delta = light.shape == LightShape::kPoint || (is_far && light.radius <= 0);
+  out.is_delta = light.shape == LightShape::kPoint || (is_far && light.radius < kLeastSunRadius);
   out.centre = is_far ? glm::normalize(axes[2]) : glm::dvec3(frame_from_light[3]);
   out.half_x = half[0];
   out.half_y = half[1];

@@ -11,7 +11,7 @@ namespace holdfast {
 template <class T>
 struct PlacedLight {
   LightShape shape = LightShape::kPoint;
-  bool is_delta = true;                 ///< a single direction: point, or sun without extent
+  bool is_delta = true;                 ///< a single direction: point, or sun of less than 1e-4 rad
   glm::vec<3, T> centre{0};             ///< metres; directional: unit direction towards the light
   glm::vec<3, T> half_x{0}, half_y{0};  ///< half axes of rectangle, disk and sun
   glm::vec<3, T> forward{0};            ///< unit; rectangle and disk emit on this side only

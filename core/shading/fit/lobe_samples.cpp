@@ -23,16 +23,18 @@ glm::dvec3 visible_normal(const glm::dvec3& v, double alpha, double u1, double u
 
 LobeSamples::LobeSamples(double ggx_alpha, double cosine, int side)
     : v(std::sqrt(1.0 - cosine * cosine), 0.0, cosine), alpha(ggx_alpha) {
-  const double count = static_cast<double>(side) * side;
   for (int i = 0; i < side; ++i) {
+    // Strata of u = 1 - (1 - t)^3 are fine where u nears 1: the lobe's far tail.
+    const double rest = 1.0 - (i + 0.5) / side, share = 3.0 * rest * rest / (side * side);
     for (int j = 0; j < side; ++j) {
-      const glm::dvec3 h = visible_normal(v, alpha, (i + 0.5) / side, (j + 0.5) / side);
+      const double turn = 0.5 * ((j + 0.5) / side - 0.5);  // the half with y > 0
+      const glm::dvec3 h = visible_normal(v, alpha, 1.0 - rest * rest * rest, turn);
       const glm::dvec3 l = glm::reflect(-v, h);
       if (l.z <= 0.0) continue;
       // BRDF * cosine over the density G1 D / (4 v.z).
       const double g1 = 1.0 / (1.0 + smith_lambda(v.z, alpha));
       const double g2 = 1.0 / (1.0 + smith_lambda(v.z, alpha) + smith_lambda(l.z, alpha));
-      const double weight = g2 / g1 / count;
+      const double weight = g2 / g1 * share;
       magnitude += weight;
       fresnel += weight * std::pow(1.0 - glm::dot(h, v), 5.0);
       points.push_back({l, weight});

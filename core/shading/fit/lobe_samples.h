@@ -13,7 +13,8 @@ struct LobePoint {
 };
 
 /// The lobe of one (alpha, view direction) as points drawn from its visible normals (Heitz, JCGT
-/// 2018), one in the middle of each of side x side strata, and its two integrals.
+/// 2018), one in the middle of each of side x side strata, and its two integrals. The points have y
+/// > 0: the plane of incidence divides the lobe into mirror images.
 struct LobeSamples {
   glm::dvec3 v{0.0};              ///< view direction, (sin, 0, cos)
   double alpha = 1.0;             ///< GGX alpha

@@ -17,7 +17,7 @@ namespace {
 using namespace holdfast;
 using namespace holdfast::fit;
 
-constexpr int kSide = 48;  // strata of a lobe along each axis
+constexpr int kSide = 40;  // strata of a lobe along each axis
 
 using Cell = std::array<double, kLtcEntries>;
 
