@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "client/scenes/light_target.h"
 #include "core/denoiser/denoiser.h"
 #include "core/frame/error.h"
 #include "core/shading/ltc.h"
 #include "tests/core/expect_input_error.h"
+#include "tests/core/ltc_oracle.h"
 #include "tests/scenes/small_scenes.h"
 
 namespace holdfast {
@@ -103,6 +105,34 @@ TEST(ShadedLight, OfAGlossySceneIsTheRenderersToTheFitsPrecision) {
       for (int c = 0; c < 3; ++c) specular.channel(c).at(x, y) = static_cast<float>(albedo[c]);
     }
   EXPECT_LT(difference_without_plane(std::move(rendered)), 0.1);
+}
+
+TEST(LightTarget, LightsASmoothLobeByItsOwnRoughness) {
+  for (const double roughness : {0.1, 0.19}) {
+    const scenes::Material floor{.roughness = roughness, .specular = glm::dvec3(0.55)};
+    const scenes::StillView still(
+        scenes::floor_and_box(scenes::rectangle_light(), {0.3, 2.0, -1.5}, floor));
+    const scenes::LightState& light = still.view.lights[0];
+    double worst = 0, brightest = 0;
+    for (int y = 1; y < 30; y += 4)
+      for (int x = 4; x < 40; x += 6) {
+        const auto primary = scenes::primary_at(still.view, x, y);
+        if (!primary || primary->object_id != 7) continue;
+        const scenes::Surface& s = primary->surface;
+        ShadingPoint<double> point;
+        point.position = s.position;
+        point.normal = s.normal;
+        point.to_viewer = s.to_viewer;
+        const test::Glossy material{s.albedo, s.specular, s.roughness};
+        const double truth =
+            light.emission.g *
+            test::brute_force(light.light, light.world_from_light, material, point, 500).g;
+        brightest = std::max(brightest, truth);
+        worst = std::max(worst, std::abs(scenes::LightTarget(light, s).unshadowed().g - truth));
+      }
+    EXPECT_GT(brightest, 1.0);
+    EXPECT_LT(worst, 0.015 * brightest) << roughness;
+  }
 }
 
 TEST(ShadedLight, OfEveryShapeIsTheRenderers) {
