@@ -69,6 +69,7 @@ Polygon<T> clip_to_horizon(const Polygon<T>& polygon) {
 /// may be at any distance. Each a x b is computed as a x (b - a), which keeps the polygon closed
 /// under rounding, so that a light of angular size e has a relative error of about epsilon / e. An
 /// edge through the origin counts as nothing: half of what is seen there, the limit of both sides.
+/// A polygon with corners that are not finite counts as nothing.
 template <class T>
 T cosine_share(const Polygon<T>& polygon) {
   T largest = T(0);
@@ -77,14 +78,14 @@ T cosine_share(const Polygon<T>& polygon) {
       largest = max_of(largest, abs_of(polygon.corners[i][axis]));
   if (!(largest > T(0))) return T(0);
   const T scale = T(1) / largest;  // no square overflows, few underflow
-  if (!std::isfinite(scale)) return T(0);
   T sum = T(0);
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const auto a = polygon.corners[i] * scale;
     const auto b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0] * scale;
     const auto c = glm::cross(a, b - a);
     const T length = glm::length(c);
-    if (length > T(0)) sum += angle_from(length, glm::dot(a, b)) * (c.z / length);
+    if (length > T(0))  // false for corners that are not finite
+      sum += angle_from(length, glm::dot(a, b)) * (c.z / length);
   }
   return min_of(T(1), abs_of(sum) * T(0.5 * std::numbers::inv_pi));
 }

@@ -61,17 +61,22 @@ TEST(CosineShare, OfASmallPolygonKeepsItsDigitsInFloat) {
 
 TEST(CosineShare, IsFiniteForEveryDegeneratePolygon) {
   const glm::dvec3 o(0), x(1, 0, 0), far(3e38, 1e38, 3e38), inf(double(kInf), 0, 1);
+  const glm::dvec3 nan(double(kNaN), 1, 1);
   for (const auto& corners : {std::vector{o, o, o},
                               {o, x, -x},
                               {x, x, x},
                               {x, -x, x},
                               {far, x, -far},
                               {inf, x, o},
-                              {glm::dvec3(1e-40), 2e-40 * x, glm::dvec3(0, 0, 1e-40)}}) {
+                              {nan, x, o},
+                              {inf, glm::dvec3(0, double(kInf), 1), x},
+                              {glm::dvec3(1e-40), 2e-40 * x, glm::dvec3(0, 0, 1e-40)},
+                              {glm::dvec3(1e-40, 0, 1e-41), glm::dvec3(-1e-40, 1e-40, 1e-41),
+                               glm::dvec3(-1e-40, -1e-40, 1e-41)}}) {
     Polygon<float> p;
     for (const glm::dvec3& corner : corners) p.add(glm::vec3(corner));
-    const float share = cosine_share(clip_to_horizon(p));
-    EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << share;
+    for (const float share : {cosine_share(p), cosine_share(clip_to_horizon(p))})
+      EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << share;
   }
 }
 
