@@ -49,6 +49,14 @@ LightShape shape_from(const v1::Light& light) {
   }
 }
 
+glm::dvec3 radiance_from(const v1::Light& light) {
+  if (light.radiance().empty()) return glm::dvec3(0);
+  if (light.radiance_size() != 3)
+    throw InputError("radiance of light " + std::to_string(light.id()), "must have 3 numbers",
+                     std::to_string(light.radiance_size()));
+  return {light.radiance(0), light.radiance(1), light.radiance(2)};
+}
+
 std::vector<PlaneId> planes_from(const google::protobuf::RepeatedPtrField<std::string>& names) {
   std::vector<PlaneId> planes;
   for (const std::string& name : names) {
@@ -117,8 +125,8 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
     throw InputError("number of lights", "must be at most " + std::to_string(kMaxLights),
                      std::to_string(request.lights_size()));
   for (const v1::Light& light : request.lights())
-    core.lights.push_back(
-        {light.id(), shape_from(light), light.width_m(), light.height_m(), light.radius()});
+    core.lights.push_back({light.id(), shape_from(light), light.width_m(), light.height_m(),
+                           light.radius(), radiance_from(light)});
   core.planes = planes_from(request.planes());
   core.recipe = checked_name("recipe", request.recipe(), recipe_names(), core.recipe);
   core.preset = checked_name("preset", request.preset(), preset_names(), core.preset);

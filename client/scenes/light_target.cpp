@@ -6,13 +6,15 @@
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/sampling.h"
+#include "core/shading/direct_light.h"
+#include "core/shading/ltc.h"
 
 namespace holdfast::scenes {
 namespace {
 
-constexpr double kLeastAcceptance = 0.125;     // of the proven bound, else the grid is cheaper
-constexpr double kLeastDirectRoughness = 0.2;  // a highlight still spans cells of the grid
-constexpr int kMostTries = 512;                // (7/8)^512 = 2e-30: never reached
+constexpr double kLeastAcceptance = 0.125;   // of the proven bound, else the grid is cheaper
+constexpr double kLeastGridRoughness = 0.2;  // a highlight still spans cells of the grid
+constexpr int kMostTries = 512;              // (7/8)^512 = 2e-30: never reached
 
 /// The rectangle light's corner (+-1, +-1) relative to `point`, world space.
 glm::dvec3 corner(const LightState& light, double x, double y, const glm::dvec3& point) {
@@ -27,6 +29,20 @@ double distance2_to_rectangle(const LightState& light, const glm::dvec3& point) 
   const double x = std::max(0.0, std::abs(local.x) - 0.5 * light.light.width);
   const double y = std::max(0.0, std::abs(local.y) - 0.5 * light.light.height);
   return x * x + y * y + local.z * local.z;
+}
+
+/// The lobe's unshadowed light from a rectangle, by linearly transformed cosines.
+glm::dvec3 transformed_lobe(const LightState& light, const Surface& surface) {
+  Light shape = light.light;
+  shape.radiance = light.emission;
+  ShadingPoint<double> point;
+  point.position = surface.position;
+  point.normal = surface.normal;
+  point.to_viewer = surface.to_viewer;
+  point.roughness = surface.roughness;
+  point.specular = directional_albedo(
+      ltc_lobe(surface.roughness, glm::dot(surface.normal, surface.to_viewer)), surface.specular);
+  return unshadowed_light(place_light<double>(shape, light.world_from_light), point);
 }
 
 }  // namespace
@@ -74,7 +90,12 @@ LightTarget::LightTarget(const LightState& light, const Surface& surface)
     if (luminance(diffuse) <= 0.0 || use_proven_bound()) return;
   }
   use_grid();
-  if (rectangle) unshadowed_ = diffuse + (lobe_ ? unshadowed_ : glm::dvec3(0.0));
+  if (!rectangle) return;
+  if (!lobe_) unshadowed_ = glm::dvec3(0.0);
+  if (lobe_ && surface.roughness < kLeastGridRoughness)
+    unshadowed_ = transformed_lobe(light, surface);
+  unshadowed_ += diffuse;
+  if (unshadowed_ == glm::dvec3(0.0)) total_ = 0.0;
 }
 
 /// Returns luminance(BRDF * emission) * cosine * geometry; adds the part that has no closed form to
@@ -87,7 +108,7 @@ double LightTarget::density(const LightSample& sample, glm::dvec3* colour) const
   glm::dvec3 lobe(0.0);
   if (lobe_)
     lobe = evaluate_lobe(surface_, sample.direction,
-                         std::max(surface_.roughness, kLeastDirectRoughness));
+                         std::max(surface_.roughness, kLeastGridRoughness));
   if (colour)
     *colour += flow * (light_.light.shape == LightShape::kRectangle ? lobe : diffuse + lobe);
   return luminance(flow * (diffuse + lobe));

@@ -29,15 +29,19 @@ double rectangle_irradiance(const LightState& light, const glm::dvec3& point,
 ///     f <= max over corners of n.(l-s) * height of s over the light's plane / smallest distance^4.
 /// Otherwise (other shapes, lobes, or where that bound accepts less than an eighth) a grid of
 /// 16 x 16 cells gives the bound 2 f(cell centre) + mean(f)/2, and f is cut there, for noisy
-/// samples and references alike; only highlights narrower than a cell are touched.
+/// samples and references alike; only highlights narrower than a cell are touched. In f, lobes of
+/// roughness below 0.2 are widened to that.
 class LightTarget {
  public:
   LightTarget(const LightState& light, const Surface& surface);
 
   /// True if the light reaches the point where nothing blocks.
   bool reaches() const { return total_ > 0.0; }
-  /// Direct light without shadows, materials applied, noise-free. Diffuse rectangles: closed form;
-  /// the rest: midpoint rule over the grid. Lobes narrower than roughness 0.2 are widened to that.
+  /// Direct light without shadows, materials applied, noise-free. Diffuse rectangles: closed form.
+  /// Lobes under rectangles: below roughness 0.2 by linearly transformed cosines, 1 % RMSE or less,
+  /// where the midpoint rule over the grid would have to widen them (18 % at 0.15, 38 % at 0.05);
+  /// from there on by the midpoint rule, below 0.4 %, where transformed cosines leave 0.3 to 13 %.
+  /// The rest: midpoint rule, lobes widened as in f.
   const glm::dvec3& unshadowed() const { return unshadowed_; }
 
   /// True if f is (n.d)+ / |d|^4 up to a factor, d from the surface to the sample.

@@ -51,6 +51,8 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
     out.set_width_m(light.width);
     out.set_height_m(light.height);
     out.set_radius(light.radius);
+    if (light.radiance != glm::dvec3(0))
+      for (int c = 0; c < 3; ++c) out.add_radiance(light.radiance[c]);
   }
   for (const PlaneId id : options.planes) request.add_planes(plane_name(id));
   request.set_recipe(options.recipe);

@@ -38,6 +38,19 @@ double light_size(StrictObject& json, const std::string& key) {
   return value;
 }
 
+glm::dvec3 read_radiance(StrictObject& json) {
+  const Json* value = json.optional("radiance");
+  if (!value) return glm::dvec3(0);
+  glm::dvec3 radiance(-1);
+  if (value->is_array() && value->size() == 3)
+    for (std::size_t c = 0; c < 3; ++c)
+      if ((*value)[c].is_number()) radiance[static_cast<int>(c)] = (*value)[c].get<double>();
+  for (int c = 0; c < 3; ++c)
+    if (!(radiance[c] >= 0) || !std::isfinite(radiance[c]))
+      throw InputError(json.subject("radiance"), "must be 3 numbers >= 0", json_excerpt(*value));
+  return radiance;
+}
+
 Light read_light(StrictObject& json) {
   Light light;
   light.id = static_cast<std::uint32_t>(json.integer("id", 0, kMaxId));
@@ -53,6 +66,7 @@ Light read_light(StrictObject& json) {
   } else if (light.shape != LightShape::kPoint) {
     light.radius = light_size(json, "radius");
   }
+  light.radiance = read_radiance(json);
   json.finish();
   return light;
 }
@@ -146,6 +160,8 @@ OrderedJson light_json(const Light& light) {
   } else if (light.shape != LightShape::kPoint) {
     json["radius"] = light.radius;
   }
+  if (light.radiance != glm::dvec3(0))
+    json["radiance"] = {light.radiance.r, light.radiance.g, light.radiance.b};
   return json;
 }
 

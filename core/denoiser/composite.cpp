@@ -19,13 +19,15 @@ struct Term {
 };
 
 std::vector<Term> terms_of(std::span<const PlaneId> signals, const PlaneSet& input,
-                           const PlaneSet& results) {
+                           const PlaneSet& shaded, const PlaneSet& results) {
   std::vector<Term> terms;
   for (const PlaneId id : signals) {
     const Plane* signal = &results.at(id);
     if (id.kind == PlaneKind::kVisibility) {
       const auto unshadowed = PlaneId::of_light(PlaneKind::kUnshadowed, id.component.light);
-      if (const Plane* factor = input.find(unshadowed)) terms.push_back({factor, signal, false});
+      const Plane* factor = input.find(unshadowed);
+      if (factor == nullptr) factor = shaded.find(unshadowed);
+      if (factor != nullptr) terms.push_back({factor, signal, false});
     } else {
       const bool glossy = id.kind == PlaneKind::kGlossy;
       terms.push_back(
@@ -56,10 +58,10 @@ void add_term(const Term& term, int channel, int y, const float* depth, int widt
 }  // namespace
 
 std::uint64_t compose(const Guides& guides, std::span<const PlaneId> signals, const PlaneSet& input,
-                      PlaneSet& results) {
+                      const PlaneSet& shaded, PlaneSet& results) {
   const int width = guides.view.width;
   Plane& out = results.add({PlaneKind::kComposite, {}}, width, guides.view.height);
-  const std::vector<Term> terms = terms_of(signals, input, results);
+  const std::vector<Term> terms = terms_of(signals, input, shaded, results);
   std::atomic<std::uint64_t> non_finite{0};
   for_each_row(guides.view.height, [&](int y) {
     std::uint64_t bad = 0;

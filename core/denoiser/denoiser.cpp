@@ -7,6 +7,7 @@
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
 #include "core/denoiser/frame_input.h"
+#include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
 #include "core/frame/error.h"
 #include "core/kernels/isa.h"
@@ -63,6 +64,8 @@ class Denoiser::Impl {
       if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
     }
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
+    for (const std::uint32_t light : plan.shaded_lights)
+      shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height);
     for (const Plan::Entry& entry : plan.components) {
       filters.emplace_back(entry, plan.recipe, c.width, c.height);
       signals.push_back(component_plane(entry.component));
@@ -95,7 +98,11 @@ class Denoiser::Impl {
       run_component(frame, frames, plan.components[k], filters[k], results, report);
       timer.end(component_name(filters[k].component()));
     }
-    report.non_finite_out = compose(guides[now], signals, frame.planes, results);
+    if (!plan.shaded_lights.empty()) {
+      shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
+      timer.end("unshadowed");
+    }
+    report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
     timer.end("composite");
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -165,6 +172,7 @@ class Denoiser::Impl {
   int now = 0;  ///< index of the current frame's guides
   SurfaceHistory surface;
   SceneMotion scene;
+  PlaneSet shaded;  ///< unshadowed light of `plan.shaded_lights`
   std::vector<ComponentFilter> filters;
   std::vector<PlaneId> signals;    ///< the planes of `filters`
   std::vector<PlaneId> announced;  ///< all result planes, in order
@@ -190,6 +198,7 @@ std::size_t Denoiser::memory_bytes() const {
       impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
   for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
+  for (const Plane& plane : impl_->shaded) sum += plane.bytes();
   return sum;
 }
 

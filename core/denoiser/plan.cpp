@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/denoiser/frame_input.h"
 #include "core/frame/error.h"
 
 namespace holdfast {
@@ -29,7 +30,19 @@ void check_lights(const DenoiserConfig& config) {
     for (const double size : {light.width, light.height, light.radius})
       if (!(size >= 0 && size <= 1e12))
         throw InputError("size of " + subject, "must be in 0..1e12 metres", std::to_string(size));
+    for (int c = 0; c < 3; ++c)
+      if (!(light.radiance[c] >= 0 && light.radiance[c] <= double{kLargestRadiance}))
+        throw InputError("radiance of " + subject, "must be in 0..1e15",
+                         std::to_string(light.radiance[c]));
   }
+}
+
+/// True if the frames bring a light's visibility and all that its unshadowed light follows from.
+bool is_shaded_here(const DenoiserConfig& config, const Light& light) {
+  return light.radiance != glm::dvec3(0) &&
+         has(config, PlaneId::of_light(PlaneKind::kVisibility, light.id)) &&
+         !has(config, PlaneId::of_light(PlaneKind::kUnshadowed, light.id)) &&
+         has(config, {PlaneKind::kAlbedo, {}});
 }
 
 void check_planes(const DenoiserConfig& config) {
@@ -89,6 +102,10 @@ Plan Plan::make(const DenoiserConfig& config) {
     plan.any_footprint |= entry.has_footprint;
     plan.any_effect |= entry.follows_effect;
   }
+  for (const Light& light : config.lights)
+    if (is_shaded_here(config, light)) plan.shaded_lights.push_back(light.id);
+  plan.shaded_lobe =
+      has(config, {PlaneKind::kSpecular, {}}) && has(config, {PlaneKind::kRoughness, {}});
   return plan;
 }
 
@@ -135,6 +152,9 @@ std::string Plan::text() const {
     text += name + ": " + (recipe.svgf_filter ? "variance-guided" : "sample-weighted") +
             " a-trous, " + std::to_string(levels) + " levels\n";
   }
+  for (const std::uint32_t light : shaded_lights)
+    text += "light" + std::to_string(light) + ".unshadowed: from the light's radiance, " +
+            (shaded_lobe ? "diffuse and specular" : "diffuse") + "\n";
   return text + "frame: composite\n";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Plan {
   };
   Recipe recipe;
   std::vector<Entry> components;
+  std::vector<std::uint32_t>
+      shaded_lights;           ///< ids; unshadowed light that the core computes itself
+  bool shaded_lobe = false;    ///< ... with a specular lobe
   bool history = false;        ///< the recipe keeps history at all
   bool any_radiance = false;   ///< a component has three channels
   bool any_footprint = false;  ///< a component has a footprint

@@ -19,6 +19,9 @@ struct Light {
   double width = 0;   ///< rectangle: extent along local X
   double height = 0;  ///< rectangle: extent along local Y
   double radius = 0;  ///< disk, sphere: metres; directional: tangent of the angular radius
+  /// What it emits, R, G, B, >= 0; 0 where nobody said. Rectangle, disk, sphere: radiance; point:
+  /// radiant intensity (radiance * m^2); directional: irradiance of a surface that faces it.
+  glm::dvec3 radiance{0.0};
 };
 
 /// "rectangle", "disk", "sphere", "point", "directional".

@@ -89,6 +89,7 @@ class Plane {
   int width() const { return width_; }
   int height() const { return height_; }
   int channels() const { return channel_count(id_.kind); }
+  std::size_t bytes() const { return storage_.bytes(); }
   bool is_uint() const { return plane_traits(id_.kind).scalar == ScalarType::kUint; }
 
   /// Channel of a float plane; asserts the type.

@@ -12,7 +12,7 @@ namespace {
 /// One pixel of surface and one of sky.
 struct Composite {
   Guides guides = test::wall(test::perspective_camera(2, 1), 2, 1);
-  PlaneSet input, results;
+  PlaneSet input, shaded, results;
 
   Composite() { test::set_pixel(guides, 1, 0, 0.0f, glm::vec3(0)); }
   static void set(PlaneSet& set, PlaneId id, glm::vec3 value) {
@@ -23,7 +23,7 @@ struct Composite {
     std::vector<PlaneId> signals;
     for (const Plane& plane : results)
       if (plane.id() != test::kCompositePlane) signals.push_back(plane.id());
-    EXPECT_EQ(compose(guides, signals, input, results), 0u);
+    EXPECT_EQ(compose(guides, signals, input, shaded, results), 0u);
     const Plane& out = results.at(test::kCompositePlane);
     return {out.channel(0).at(x, 0), out.channel(1).at(x, 0), out.channel(2).at(x, 0)};
   }

@@ -54,6 +54,18 @@ TEST(SequenceJson, OnlyRequiredKeysAreEnough) {
   EXPECT_FALSE(description.frames[1].cut);
 }
 
+TEST(SequenceJson, RadianceOfALightIsOptionalAndSurvivesWriting) {
+  Json json = valid();
+  EXPECT_EQ(read(json).header.lights[0].radiance, glm::dvec3(0));
+  json["lights"][0]["radiance"] = {1.5, 0, 2e3};
+  const SequenceDescription description = read(json);
+  EXPECT_EQ(description.header.lights[0].radiance, glm::dvec3(1.5, 0, 2e3));
+  const TempDir dir;
+  write_sequence_json(dir / "sequence.json", description.header, description.frames);
+  EXPECT_EQ(read_sequence_json(dir / "sequence.json").header.lights[0].radiance,
+            glm::dvec3(1.5, 0, 2e3));
+}
+
 TEST(SequenceJson, MatricesAreRowMajor) {
   Json json = valid();
   json["frames"][0]["camera"]["viewFromWorld"][3] = 5.5;  // row 0, column 3: translation along x
@@ -95,6 +107,8 @@ TEST(SequenceJson, EachWrongValueStatesRuleAndValue) {
   expect_error_with("/lights", Json::object(), {"lights", "array"});
   expect_error_with("/lights/0/shape", "mesh", {"lights[0].shape", "rectangle", "mesh"});
   expect_error_with("/lights/0/width", -1, {"lights[0].width", ">= 0", "-1"});
+  for (const Json& bad : {Json(3), Json({1, 2}), Json({1, 2, -1}), Json({1, "a", 2})})
+    expect_error_with("/lights/0/radiance", bad, {"lights[0].radiance", "3 numbers >= 0"});
   expect_error_with("/frames", Json::array(), {"frames", "at least one"});
   expect_error_with("/frames/0/cut", 1, {"frames[0].cut", "true or false", "is 1"});
   expect_error_with("/frames/0/camera/viewFromWorld", {1, 2, 3},

@@ -1,5 +1,6 @@
 #include <thread>
 
+#include "server/convert.h"
 #include "tests/service/served.h"
 
 namespace holdfast {
@@ -19,6 +20,14 @@ std::vector<Frame> small_frames(const DenoiserConfig& config, int count, std::ui
   return frames;
 }
 
+/// A session that leaves the unshadowed light to the server.
+DenoiserConfig shaded_config() {
+  DenoiserConfig config = test::small_config();
+  config.lights[0].radiance = {1.0, 2.0, 3.0};
+  config.planes[3] = {PlaneKind::kAlbedo, {}};
+  return config;
+}
+
 class Service : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Service, ::testing::Values(1, 2));
 
@@ -27,6 +36,31 @@ TEST_P(Service, GivesTheBitsOfTheCoreCalledDirectly) {
   const DenoiserConfig config = test::small_config();
   const std::vector<Frame> frames = small_frames(config, 6, 1);
   expect_same(served(server, config, frames), direct(config, frames));
+}
+
+TEST_P(Service, KnowsWhatALightEmitsWhereItsUnshadowedPlaneIsNotSent) {
+  const server::Server server(server_config(GetParam()));
+  const DenoiserConfig config = shaded_config();
+  const std::vector<Frame> frames = small_frames(config, 2, 1);
+  expect_same(served(server, config, frames), direct(config, frames));
+  DenoiserConfig dark = config;
+  dark.lights[0].radiance = glm::dvec3(0);
+  EXPECT_FALSE(test::same_bits(direct(config, frames)[0], direct(dark, frames)[0]));
+}
+
+TEST(SessionConfig, RefusesARadianceThatHasNotThreeNumbers) {
+  v1::CreateSessionRequest request;
+  request.set_width_px(4);
+  request.set_height_px(4);
+  v1::Light& light = *request.add_lights();
+  light.set_shape(v1::LIGHT_SHAPE_POINT);
+  for (int count = 1; count <= 4; ++count) {
+    light.add_radiance(1.0);
+    if (count == 3)
+      EXPECT_NO_THROW(server::session_config_from(request));
+    else
+      EXPECT_THROW(server::session_config_from(request), InputError) << count;
+  }
 }
 
 TEST_P(Service, CarriesPlanesLargerThanAChunk) {
