@@ -49,7 +49,7 @@ Scratch::Scratch(int width, int height, bool any_radiance, bool any_shadow, bool
 std::size_t Scratch::bytes() const {
   return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() +
          shadow.taps.bytes() + shadow.motion.bytes() + window.between.bytes() +
-         window.spread.bytes() + blend.bytes() + filter.bytes() + debug.bytes();
+         window.spread.bytes() + blend.bytes() + filter.bytes() + gradients.bytes() + debug.bytes();
 }
 
 ComponentFilter::ComponentFilter(Component component, const Recipe& recipe, int width, int height)
@@ -118,8 +118,11 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
 }
 
 void ComponentFilter::blend(const ComponentInput& input, bool with_shadow, Scratch& s) {
-  const HistorySources sources{recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
-                               with_shadow ? &s.shadow : nullptr};
+  HistorySources sources{recipe_.vectors == HistoryVectors::kNone ? nullptr : input.surface,
+                         with_shadow ? &s.shadow : nullptr,
+                         {}};
+  if (input.gradients && sources.surface != nullptr)
+    sources.antilag = antilag_of_gradients(input.frames.now, s.gradients);
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;

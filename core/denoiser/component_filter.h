@@ -2,6 +2,7 @@
 
 #include "core/denoiser/recipe.h"
 #include "core/history/frame_pair.h"
+#include "core/history/gradients.h"
 
 namespace holdfast {
 
@@ -17,7 +18,8 @@ struct Scratch {
   WindowScratch window;
   BlendScratch blend;
   FilterScratch filter;
-  Channels<float> debug;  ///< DebugChannel; only where debug planes are asked for
+  GradientScratch gradients;  ///< samples of the component; only where a component has them
+  Channels<float> debug;      ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
   Scratch(int width, int height, bool any_radiance, bool any_shadow, bool blend, bool debug);
@@ -30,6 +32,7 @@ struct ComponentInput {
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
   BlockerPlanes blockers;
+  bool gradients = false;  ///< Scratch::gradients holds samples of the component
 };
 
 /// Filters one component in time and space, and keeps its history.

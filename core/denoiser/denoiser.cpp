@@ -9,6 +9,7 @@
 #include "core/denoiser/frame_input.h"
 #include "core/denoiser/plan.h"
 #include "core/frame/error.h"
+#include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
@@ -33,15 +34,14 @@ class StageTimer {
   Clock::time_point last_;
 };
 
-/// The planes of `frame` must be exactly those of the session, each of the session's size.
+/// The planes of `frame` must be exactly those of the session, each of its size.
 void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
   for (const PlaneId id : config.planes) {
     const Plane& plane = planes.at(id);
-    if (plane.width() != config.width || plane.height() != config.height)
-      throw InputError(
-          "plane " + plane_name(id),
-          "must be " + std::to_string(config.width) + "x" + std::to_string(config.height),
-          std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
+    const PlaneSize size = plane_size(id, config.width, config.height);
+    const PlaneSize found{plane.width(), plane.height()};
+    if (found != size)
+      throw InputError("plane " + plane_name(id), "must be " + size_text(size), size_text(found));
   }
   for (const Plane& plane : planes)
     if (std::find(config.planes.begin(), config.planes.end(), plane.id()) == config.planes.end())
@@ -61,6 +61,7 @@ class Denoiser::Impl {
     announced = result_planes(c);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) g = Guides(c.width, c.height);
+    if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height);
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
     for (const Plan::Entry& entry : plan.components) {
       filters.emplace_back(entry.component, plan.recipe, c.width, c.height);
@@ -115,7 +116,12 @@ class Denoiser::Impl {
                      ComponentFilter& component_filter, PlaneSet& results, FrameReport& report) {
     const PlaneId id = component_plane(entry.component);
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
-    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}};
+    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, entry.gradients};
+    if (entry.gradients) {
+      const PlaneId gradient{PlaneKind::kGradient, entry.component};
+      count_repairs(report, gradient,
+                    load_gradients(frame.planes.at(gradient), kLargestRadiance, scratch.gradients));
+    }
     if (entry.follows_shadows) {
       const std::uint32_t light = entry.component.light;
       input.light = &*std::find_if(config.lights.begin(), config.lights.end(),
@@ -191,6 +197,12 @@ const std::vector<std::string>& recipe_names() {
     return out;
   }();
   return names;
+}
+
+bool recipe_uses(std::string_view recipe, PlaneKind kind) {
+  if (kind != PlaneKind::kGradient) return true;
+  return std::any_of(all_recipes().begin(), all_recipes().end(),
+                     [&](const Recipe& r) { return r.name == recipe && r.gradients; });
 }
 
 const std::vector<std::string>& preset_names() {

@@ -14,12 +14,14 @@ struct Plan {
   struct Entry {
     Component component;
     bool follows_shadows = false;  ///< a visibility with blocker planes: shadow vectors, footprint
+    bool gradients = false;        ///< the recipe asks for gradient samples and frames bring them
   };
   Recipe recipe;
   std::vector<Entry> components;
   bool history = false;       ///< the recipe keeps history at all
   bool any_radiance = false;  ///< a component has three channels
   bool any_shadow = false;    ///< a component follows shadows
+  bool any_gradients = false;
 
   /// Checks `config` and derives its plan. Throws InputError naming what is wrong.
   static Plan make(const DenoiserConfig& config);

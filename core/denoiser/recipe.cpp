@@ -23,13 +23,21 @@ std::vector<Recipe> make_recipes() {
   Recipe traditional = base("traditional", HistoryVectors::kSurface);
   Recipe clamp = base("clamp", HistoryVectors::kSurface);
   clamp.accumulation.rectification = Rectification::kClamp;
+  Recipe clamp_box = base("clamp-box", HistoryVectors::kSurface);
+  clamp_box.accumulation.rectification = Rectification::kClampBox;
   Recipe svgf = base("svgf", HistoryVectors::kSurface);
   svgf.accumulation.alpha = 0.2f;  // SVGF sec. 4.1
   svgf.svgf_filter = true;
+  Recipe asvgf = svgf;
+  asvgf.name = "asvgf";
+  asvgf.gradients = true;
   Recipe paper = base("paper", HistoryVectors::kPaperShadow);
   paper.accumulation.rectification = Rectification::kClampFallback;
+  Recipe paper_adaptive = paper;
+  paper_adaptive.name = "paper-adaptive";
+  paper_adaptive.gradients = true;
   Recipe reliable = base("reliable", HistoryVectors::kCandidates);
-  return {spatial, traditional, clamp, svgf, paper, reliable};
+  return {spatial, traditional, clamp, clamp_box, svgf, asvgf, paper, paper_adaptive, reliable};
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct Recipe {
   std::string name;
   HistoryVectors vectors = HistoryVectors::kSurface;
   AccumulationRule accumulation;       ///< unless vectors is kCandidates
+  bool gradients = false;              ///< replace history sooner where gradient samples say so
   ExpectedErrorRule visibility_blend;  ///< if vectors is kCandidates
   ExpectedErrorRule radiance_blend;
   AdaptiveFilterSettings visibility_filter;  ///< unless svgf_filter

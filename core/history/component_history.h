@@ -23,10 +23,11 @@ struct ComponentHistory {
   ChannelView<float> moment(int order) { return data[channels + order]; }
 };
 
-/// The histories that a component may follow. A null pointer: none of that kind.
+/// The histories that a component may follow, and how fast to leave them. Null: none of that kind.
 struct HistorySources {
   const SurfaceHistory* surface = nullptr;
   const ShadowHistory* shadow = nullptr;
+  ChannelView<const float> antilag = {};  ///< lambda of `antilag_of_gradients`, by stratum
 };
 
 /// Optional record of what a temporal pass did, for the debug planes: motion_px X, Y, frames of
