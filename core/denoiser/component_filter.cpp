@@ -122,7 +122,7 @@ void ComponentFilter::blend(const ComponentInput& input, bool with_shadow, Scrat
                          with_shadow ? &s.shadow : nullptr,
                          {}};
   if (input.gradients && sources.surface != nullptr)
-    sources.antilag = antilag_of_gradients(input.frames.now, s.gradients);
+    sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;

@@ -202,7 +202,7 @@ const std::vector<std::string>& recipe_names() {
 bool recipe_uses(std::string_view recipe, PlaneKind kind) {
   if (kind != PlaneKind::kGradient) return true;
   return std::any_of(all_recipes().begin(), all_recipes().end(),
-                     [&](const Recipe& r) { return r.name == recipe && r.gradients; });
+                     [&](const Recipe& r) { return r.name == recipe && r.gradient_levels > 0; });
 }
 
 const std::vector<std::string>& preset_names() {

@@ -86,7 +86,8 @@ Plan Plan::make(const DenoiserConfig& config) {
     }
   }
   for (Entry& entry : plan.components) {
-    entry.gradients = plan.recipe.gradients && has(config, {PlaneKind::kGradient, entry.component});
+    entry.gradients =
+        plan.recipe.gradient_levels > 0 && has(config, {PlaneKind::kGradient, entry.component});
     plan.any_gradients |= entry.gradients;
   }
   return plan;
@@ -113,7 +114,7 @@ std::string Plan::text() const {
                           : "exponential mean, clamped")) +
               "\n";
     }
-    if (recipe.gradients)
+    if (recipe.gradient_levels > 0)
       text += name + (entry.gradients ? ": history replaced sooner by gradient samples\n"
                                       : ": no gradient samples, history at its fixed pace\n");
     const int levels = recipe.svgf_filter ? recipe.svgf_levels

@@ -30,12 +30,12 @@ std::vector<Recipe> make_recipes() {
   svgf.svgf_filter = true;
   Recipe asvgf = svgf;
   asvgf.name = "asvgf";
-  asvgf.gradients = true;
+  asvgf.gradient_levels = 1;  // ours, as for paper-adaptive: best of 1..5 on fence and cylinder
   Recipe paper = base("paper", HistoryVectors::kPaperShadow);
   paper.accumulation.rectification = Rectification::kClampFallback;
   Recipe paper_adaptive = paper;
   paper_adaptive.name = "paper-adaptive";
-  paper_adaptive.gradients = true;
+  paper_adaptive.gradient_levels = 2;
   Recipe reliable = base("reliable", HistoryVectors::kCandidates);
   return {spatial, traditional, clamp, clamp_box, svgf, asvgf, paper, paper_adaptive, reliable};
 }

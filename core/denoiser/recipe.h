@@ -23,8 +23,9 @@ enum class HistoryVectors {
 struct Recipe {
   std::string name;
   HistoryVectors vectors = HistoryVectors::kSurface;
-  AccumulationRule accumulation;       ///< unless vectors is kCandidates
-  bool gradients = false;              ///< replace history sooner where gradient samples say so
+  AccumulationRule accumulation;  ///< unless vectors is kCandidates
+  int gradient_levels = 0;        ///< of the filter of gradient samples, which say where to replace
+                                  ///< history sooner; 0: does not use them
   ExpectedErrorRule visibility_blend;  ///< if vectors is kCandidates
   ExpectedErrorRule radiance_blend;
   AdaptiveFilterSettings visibility_filter;  ///< unless svgf_filter

@@ -74,7 +74,7 @@ std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch&
   return repaired;
 }
 
-ChannelView<const float> antilag_of_gradients(const Guides& now, GradientScratch& s) {
+ChannelView<const float> antilag_of_gradients(const Guides& now, int levels, GradientScratch& s) {
   fill_guides(now, s.guides);
   FilterRow pass;
   pass.guides = &s.guides;
@@ -83,7 +83,7 @@ ChannelView<const float> antilag_of_gradients(const Guides& now, GradientScratch
   pass.spread = Spread::kVariance;
   pass.spread_in = std::as_const(s.spread)[0];
   pass.spread_out = s.spread[1];
-  for (int level = 0; level < kGradientLevels; ++level) {
+  for (int level = 0; level < levels; ++level) {
     pass.step = 1 << level;
     for (int c = 0; c < 2; ++c) {
       pass.in[c] = std::as_const(level % 2 == 0 ? s.samples : s.filtered)[c];
@@ -91,7 +91,7 @@ ChannelView<const float> antilag_of_gradients(const Guides& now, GradientScratch
     }
     filter_image(pass);
   }
-  const Channels<float>& last = kGradientLevels % 2 == 0 ? s.samples : s.filtered;
+  const Channels<float>& last = levels % 2 == 0 ? s.samples : s.filtered;
   for_each_row(s.antilag.height(), [&](int y) {
     for (int x = 0; x < s.antilag.width(); ++x) {
       const float delta = std::abs(last[kDelta].at(x, y)), scale = last[kLargest].at(x, y);

@@ -26,14 +26,13 @@ struct GradientScratch {
 std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch& scratch);
 
 /// How much faster than usual history must be replaced because the light changes (A-SVGF, Schied et
-/// al. 2018): with delta and Delta of `scratch.samples` filtered by a 3x3 a-trous filter that stays
-/// on a surface,
+/// al. 2018): with delta and Delta of `scratch.samples` filtered by `levels` passes of a 3x3
+/// a-trous filter that stays on a surface,
 ///   lambda = min(1, |delta| / Delta), 0 where Delta is 0.
-/// Returns lambda, one value for each stratum, in `scratch.antilag`.
-///   reads guides, samples | writes antilag | halo 2^kGradientLevels - 1 strata
-ChannelView<const float> antilag_of_gradients(const Guides& now, GradientScratch& scratch);
-
-/// Passes of the gradients' filter. Ours: A-SVGF gives no number; tuned on fence and cylinder.
-inline constexpr int kGradientLevels = 3;
+/// Returns lambda, one value for each stratum, in `scratch.antilag`. More levels bring less noise,
+/// but dilute what changes in a narrow strip, such as the edge of a shadow.
+///   reads guides, samples | writes antilag | halo 2^levels - 1 strata
+ChannelView<const float> antilag_of_gradients(const Guides& now, int levels,
+                                              GradientScratch& scratch);
 
 }  // namespace holdfast
