@@ -1,11 +1,13 @@
 #include "client/cli/demo.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "client/cli/progress.h"
 #include "client/cli/render.h"
 #include "client/cli/replay.h"
 #include "client/measure/strip.h"
+#include "core/denoiser/denoiser.h"
 
 namespace holdfast::cli {
 namespace {
@@ -21,6 +23,9 @@ void render_scene(const DemoOptions& options, const std::string& scene,
   render.settings.reference_spp = options.reference_spp;
   render.settings.seed = options.seed;
   render.settings.speed = options.speed;
+  render.settings.gradients = std::any_of(
+      options.recipes.begin(), options.recipes.end(),
+      [](const std::string& recipe) { return recipe_uses(recipe, PlaneKind::kGradient); });
   render.quiet = options.quiet;
   render_sequence(render);
 }
