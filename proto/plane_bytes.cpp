@@ -28,11 +28,6 @@ void for_each_run(const Plane& plane, std::size_t offset, std::size_t bytes, F&&
 
 }  // namespace
 
-PlaneSize plane_size(PlaneId id, int width, int height) {
-  if (id.kind == PlaneKind::kGradient) return {(width + 2) / 3, (height + 2) / 3};
-  return {width, height};
-}
-
 std::size_t plane_bytes(PlaneId id, PlaneSize size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height) *
          static_cast<std::size_t>(channel_count(id.kind)) * 4;

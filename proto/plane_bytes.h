@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/frame/plane.h"
+#include "core/frame/plane_size.h"
 
 /// The bytes of a plane on the wire: its channels one after the other, each with its rows from the
 /// top, without padding, in little-endian words of 4 bytes. Shared by both ends of the protocol.
@@ -15,14 +16,6 @@ inline constexpr std::size_t kMaxChunkBytes = 1u << 20;
 
 /// Largest message that either end accepts, bytes: a chunk, or a frame's tables of transforms.
 inline constexpr int kMaxMessageBytes = 8 << 20;
-
-/// The size that a plane of `id` has in a frame of `width` x `height` pixels: the frame's, except
-/// for gradient planes, which are ceil(width / 3) x ceil(height / 3).
-struct PlaneSize {
-  int width = 0, height = 0;
-  friend bool operator==(const PlaneSize&, const PlaneSize&) = default;
-};
-PlaneSize plane_size(PlaneId id, int width, int height);
 
 /// Bytes of a plane of `id` with that size.
 std::size_t plane_bytes(PlaneId id, PlaneSize size);

@@ -34,7 +34,7 @@ void FrameAssembler::begin(const v1::FrameBegin& message, FrameSlot& slot) {
     }
     // Planes are added before pointers to them are taken: adding may move the others.
     for (const PlaneId id : config_.denoiser.planes) {
-      const auto size = wire::plane_size(id, config_.denoiser.width, config_.denoiser.height);
+      const auto size = plane_size(id, config_.denoiser.width, config_.denoiser.height);
       slot.frame.planes.add(id, size.width, size.height);
     }
     for (std::size_t i = 0; i < progress_.size(); ++i)
@@ -54,7 +54,7 @@ void FrameAssembler::announce(const v1::FramePlane& message) {
   Progress& progress = progress_[message.plane()];
   if (progress.size != 0)
     throw InputError("plane " + plane_name(id), "must be announced once", "announced twice");
-  const auto size = wire::plane_size(id, config_.denoiser.width, config_.denoiser.height);
+  const auto size = plane_size(id, config_.denoiser.width, config_.denoiser.height);
   const auto width = static_cast<std::uint64_t>(size.width);
   const auto height = static_cast<std::uint64_t>(size.height);
   if (message.width_px() != width || message.height_px() != height)

@@ -41,7 +41,7 @@ SessionCounters Session::counters() const {
 std::size_t frame_bytes(const DenoiserConfig& config) {
   std::size_t bytes = 0;
   const auto add = [&](PlaneId id) {
-    bytes += wire::plane_bytes(id, wire::plane_size(id, config.width, config.height));
+    bytes += wire::plane_bytes(id, plane_size(id, config.width, config.height));
   };
   for (const PlaneId id : config.planes) add(id);
   for (const PlaneId id : result_planes(config)) add(id);

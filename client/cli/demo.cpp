@@ -1,6 +1,9 @@
 #include "client/cli/demo.h"
 
+#include <algorithm>
+
 #include "client/measure/strip.h"
+#include "core/denoiser/denoiser.h"
 
 namespace holdfast::cli {
 namespace {
@@ -14,6 +17,9 @@ RenderOptions render_options(const DemoOptions& options, const std::string& scen
   render.settings.reference_spp = options.reference_spp;
   render.settings.seed = options.seed;
   render.settings.speed = options.speed;
+  render.settings.gradients = std::any_of(
+      options.recipes.begin(), options.recipes.end(),
+      [](const std::string& recipe) { return recipe_uses(recipe, PlaneKind::kGradient); });
   return render;
 }
 

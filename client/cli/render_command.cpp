@@ -67,6 +67,8 @@ void add_render(CLI::App& app) {
   command->add_option("--speed", settings.speed, "Multiplies the speed of all animation")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag("!--no-gradients", settings.gradients,
+                    "Leave out gradient.####.exr, which the adaptive recipes use");
   command->add_option("--describe", options.describe, "Also write the scene as JSON to this file");
   command->add_option("--json", arguments->json, "Write figures of the run to this file");
   command->add_flag("--quiet", options.quiet, "No progress");

@@ -12,6 +12,7 @@
 #include "client/cli/embedded_server.h"
 #include "client/cli/progress.h"
 #include "client/sequence/sequence.h"
+#include "core/denoiser/denoiser.h"
 
 namespace holdfast::cli {
 namespace {
@@ -31,6 +32,11 @@ std::vector<std::int64_t> chosen_frames(const SequenceReader& sequence,
   return frames;
 }
 
+/// Gradient planes are read and sent only where they can change the results.
+bool wants_gradients(const ReplayOptions& options) {
+  return recipe_uses(options.recipe, PlaneKind::kGradient);
+}
+
 client::SessionOptions session_options(const SequenceReader& sequence, const ReplayOptions& options,
                                        const std::string& address) {
   client::SessionOptions session;
@@ -38,7 +44,7 @@ client::SessionOptions session_options(const SequenceReader& sequence, const Rep
   session.width = sequence.header().width;
   session.height = sequence.header().height;
   session.lights = sequence.header().lights;
-  session.planes = sequence.planes();
+  session.planes = sequence.planes(wants_gradients(options));
   session.recipe = options.recipe;
   session.preset = options.preset;
   session.wire = options.wire;
@@ -73,8 +79,9 @@ class Replay {
 
   ReplayResult run() {
     const Clock::time_point start = Clock::now();
+    const bool with_gradients = wants_gradients(options_);
     for (std::size_t i = 0; i < frames_.size(); ++i) {
-      auto frame = std::make_shared<const Frame>(sequence_.read_frame(frames_[i]));
+      auto frame = std::make_shared<const Frame>(sequence_.read_frame(frames_[i], with_gradients));
       pace(start, i);
       while (!session_.try_submit(frame)) accept(session_.receive());
       while (accept(session_.try_receive())) {

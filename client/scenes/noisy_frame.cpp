@@ -7,6 +7,7 @@
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
+#include "client/scenes/noise.h"
 #include "client/scenes/path.h"
 #include "client/scenes/pixel_writer.h"
 #include "client/scenes/sampling.h"
@@ -16,13 +17,6 @@ namespace holdfast::scenes {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
-
-/// Streams of random numbers of a pixel. Lights follow from kFirstLight on.
-enum Stream : std::uint64_t { kGlossyStream, kIndirectStream, kFirstLight };
-
-Rng rng_of(const View& view, std::uint64_t pixel, std::uint64_t stream) {
-  return {view.seed, static_cast<std::uint64_t>(view.frame), pixel, stream};
-}
 
 /// Views of all planes of one light.
 struct LightPlanes {
@@ -40,9 +34,10 @@ struct LightPlanes {
 
 class NoisyFrame {
  public:
-  NoisyFrame(const View& view, int spp, PlaneSet& planes)
+  NoisyFrame(const View& view, int spp, GradientSamples* gradients, PlaneSet& planes)
       : view_(view),
         spp_(spp),
+        gradients_(gradients),
         depth_(planes, {PlaneKind::kDepth, {}}, view.width, view.height),
         normal_(planes, {PlaneKind::kNormal, {}}, view.width, view.height),
         object_id_(planes, {PlaneKind::kObjectId, {}}, view.width, view.height) {
@@ -71,6 +66,7 @@ class NoisyFrame {
   void render_pixel(int x, int y) const {
     const auto primary = primary_at(view_, x, y);
     if (!primary) return render_sky(x, y);
+    if (gradients_ && gradients_->is_chosen(x, y)) gradients_->record_surface(x, y, *primary);
     const Surface& surface = primary->surface;
     depth_.set(x, y, primary->depth_view_m);
     normal_.set(x, y, surface.normal);
@@ -82,9 +78,8 @@ class NoisyFrame {
   }
 
  private:
-  std::uint64_t pixel(int x, int y) const {
-    return static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view_.width) +
-           static_cast<std::uint64_t>(x);
+  void record(int x, int y, std::uint64_t stream, double luminance) const {
+    if (gradients_ && gradients_->is_chosen(x, y)) gradients_->record_now(x, y, stream, luminance);
   }
 
   void render_sky(int x, int y) const {
@@ -103,8 +98,9 @@ class NoisyFrame {
     out.unshadowed.set(x, y, target.unshadowed());
     out.visibility.set(x, y, 1.0);
     out.distance.set(x, y, static_cast<double>(kInf));
+    record(x, y, kFirstLight + k, 1.0);
     if (!target.reaches()) return;
-    Rng rng = rng_of(view_, pixel(x, y), kFirstLight + k);
+    Rng rng = noise_of(view_, x, y, kFirstLight + k);
     int visible = 0;
     for (int i = 0; i < spp_; ++i) {
       const glm::dvec2 uv = target.draw(rng);
@@ -117,6 +113,7 @@ class NoisyFrame {
         if (hit) out.blocker.set(x, y, view_.scene.objects[hit->object].id);
       }
       if (!hit) ++visible;
+      if (i == 0) record(x, y, kFirstLight + k, visible);
     }
     out.visibility.set(x, y, static_cast<double>(visible) / spp_);
   }
@@ -125,7 +122,7 @@ class NoisyFrame {
     roughness_.set(x, y, surface.roughness);
     specular_.set(x, y, specular_factor(surface));
     hit_distance_.set(x, y, static_cast<double>(kInf));
-    Rng rng = rng_of(view_, pixel(x, y), kGlossyStream);
+    Rng rng = noise_of(view_, x, y, kGlossyStream);
     glm::dvec3 sum(0.0);
     for (int i = 0; i < spp_; ++i) {
       const LobeSample lobe = sample_lobe(surface, rng.next2());
@@ -134,6 +131,7 @@ class NoisyFrame {
           trace_path(view_.scene, view_.world, view_.lights, surface.origin, lobe.direction, rng);
       sum += lobe.weight * incident.radiance;
       if (i > 0) continue;
+      record(x, y, kGlossyStream, luminance(lobe.weight * incident.radiance));
       glossy_direction_.set(x, y, lobe.direction);
       if (!incident.hit) continue;
       hit_distance_.set(x, y, glm::distance(incident.hit->position, surface.position));
@@ -144,19 +142,22 @@ class NoisyFrame {
 
   void render_indirect(int x, int y, const Surface& surface) const {
     albedo_.set(x, y, surface.albedo);
-    Rng rng = rng_of(view_, pixel(x, y), kIndirectStream);
+    Rng rng = noise_of(view_, x, y, kIndirectStream);
     glm::dvec3 sum(0.0);
     for (int i = 0; i < spp_; ++i) {
       const glm::dvec3 direction = sample_cosine(surface.normal, rng.next2());
       sum += trace_path(view_.scene, view_.world, view_.lights, surface.origin, direction, rng)
                  .radiance;
-      if (i == 0) indirect_direction_.set(x, y, direction);
+      if (i > 0) continue;
+      record(x, y, kIndirectStream, luminance(sum));
+      indirect_direction_.set(x, y, direction);
     }
     indirect_.set(x, y, sum / static_cast<double>(spp_));
   }
 
   const View& view_;
   int spp_;
+  GradientSamples* gradients_;
   PixelWriter depth_, normal_;
   IdWriter object_id_;
   PixelWriter emission_, roughness_, specular_, glossy_, glossy_direction_, hit_distance_;
@@ -167,9 +168,9 @@ class NoisyFrame {
 
 }  // namespace
 
-PlaneSet render_noisy(const View& view, int spp) {
+PlaneSet render_noisy(const View& view, int spp, GradientSamples* gradients) {
   PlaneSet planes;
-  const NoisyFrame frame(view, spp, planes);
+  const NoisyFrame frame(view, spp, gradients, planes);
   tbb::parallel_for(0, view.height, [&](int y) {
     for (int x = 0; x < view.width; ++x) frame.render_pixel(x, y);
   });

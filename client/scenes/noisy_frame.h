@@ -1,5 +1,6 @@
 #pragma once
 
+#include "client/scenes/gradient_frame.h"
 #include "client/scenes/view.h"
 #include "core/frame/plane.h"
 
@@ -15,6 +16,8 @@ namespace holdfast::scenes {
 ///
 /// With more than one sample, visibility and radiance are means; the blocker is that of the first
 /// blocked sample, and directions and hits are those of the first sample.
-PlaneSet render_noisy(const View& view, int spp);
+///
+/// `gradients`, if given, gets what its pixels show and their first samples.
+PlaneSet render_noisy(const View& view, int spp, GradientSamples* gradients = nullptr);
 
 }  // namespace holdfast::scenes

@@ -81,6 +81,19 @@ bool Renderer::at_rest_between(double a, double b) const {
   return scene_.camera.motion.at(a) == scene_.camera.motion.at(b);
 }
 
+/// Sets the world to `time`; views of another time see that, too.
+View Renderer::view_at(double time, std::int64_t index) {
+  world_.set_time(time);
+  return {scene_,
+          world_,
+          lights_at(scene_, time),
+          camera_at(scene_, time, settings_.width, settings_.height),
+          settings_.width,
+          settings_.height,
+          settings_.seed,
+          index};
+}
+
 Frame Renderer::frame(std::int64_t index) {
   const double now = time_of(index), before = time_of(index - 1);
   const bool is_first = index == settings_.first_frame;
@@ -92,26 +105,24 @@ Frame Renderer::frame(std::int64_t index) {
     fill_table(frame.objects, object.id, object, before, now, is_first);
   for (const SceneLight& light : scene_.lights)
     fill_table(frame.lights, light.light.id, light, before, now, is_first);
-  world_.set_time(now);
-  const View view{scene_,          world_,           lights_at(scene_, now), frame.camera,
-                  settings_.width, settings_.height, settings_.seed,         index};
-  frame.planes = render_noisy(view, settings_.spp);
+  const View view = view_at(now, index);
+  if (!settings_.gradients) {
+    frame.planes = render_noisy(view, settings_.spp);
+  } else if (is_first || frame.cut || at_rest_between(before, now)) {
+    frame.planes = render_noisy(view, settings_.spp);
+    add_empty_gradients(view, frame.planes);
+  } else {
+    GradientSamples gradients(view);
+    frame.planes = render_noisy(view, settings_.spp, &gradients);
+    gradients.finish(view_at(before, index), now, before, frame.planes);
+  }
   return frame;
 }
 
 const PlaneSet& Renderer::reference(std::int64_t index) {
   const double now = time_of(index);
   if (has_reference_ && at_rest_between(reference_time_, now)) return reference_;
-  world_.set_time(now);
-  const View view{scene_,
-                  world_,
-                  lights_at(scene_, now),
-                  camera_at(scene_, now, settings_.width, settings_.height),
-                  settings_.width,
-                  settings_.height,
-                  settings_.seed,
-                  index};
-  reference_ = render_reference(view, settings_.reference_spp);
+  reference_ = render_reference(view_at(now, index), settings_.reference_spp);
   reference_time_ = now;
   has_reference_ = true;
   return reference_;

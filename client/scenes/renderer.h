@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/scenes/scene.h"
+#include "client/scenes/view.h"
 #include "client/scenes/world.h"
 #include "core/frame/frame.h"
 
@@ -18,6 +19,7 @@ struct RenderSettings {
   std::uint64_t seed = 1;
   double speed = 1.0;            ///< of all animation: frame i shows the scene at time i * speed
   std::int64_t first_frame = 0;  ///< its tables name every object and light
+  bool gradients = true;         ///< frames bring gradient planes, too
 };
 
 /// Renders a scene frame by frame. The images are a function of scene, settings and frame index;
@@ -35,7 +37,9 @@ class Renderer {
   std::vector<std::pair<std::uint32_t, std::string>> objects() const;
 
   /// Noisy frame `index` with camera, transforms (all in the first frame, later those that moved or
-  /// appeared since frame index - 1) and the planes of `render_noisy`.
+  /// appeared since frame index - 1), the planes of `render_noisy`, and gradient planes against
+  /// frame index - 1. These are (0, 0), no samples, in the first frame, at cuts, and where nothing
+  /// has moved.
   Frame frame(std::int64_t index);
   /// Planes of `render_reference`; valid until the next call. Kept as long as nothing moves.
   const PlaneSet& reference(std::int64_t index);
@@ -43,6 +47,7 @@ class Renderer {
  private:
   double time_of(std::int64_t index) const { return static_cast<double>(index) * settings_.speed; }
   bool at_rest_between(double a, double b) const;
+  View view_at(double time, std::int64_t index);
 
   Scene scene_;
   RenderSettings settings_;

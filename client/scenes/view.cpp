@@ -35,7 +35,7 @@ std::optional<Primary> primary_at(const View& view, int x, int y) {
   const double depth = -(view.camera.view_from_world * glm::dvec4(hit->position, 1.0)).z;
   if (!(depth > 0.0)) return std::nullopt;
   return Primary{surface_at(view.scene, *hit, direction), view.scene.objects[hit->object].id,
-                 depth};
+                 hit->object, depth};
 }
 
 }  // namespace holdfast::scenes

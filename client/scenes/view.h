@@ -29,6 +29,7 @@ struct View {
 struct Primary {
   Surface surface;
   std::uint32_t object_id = 0;
+  std::size_t object = 0;     ///< index in Scene::objects
   double depth_view_m = 0.0;  ///< planar, > 0
 };
 

@@ -34,10 +34,6 @@ void write_transforms(const TransformTable& table,
   }
 }
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 }  // namespace
 
 void write_create_request(const SessionOptions& options, v1::CreateSessionRequest& request) {
@@ -109,10 +105,10 @@ void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
 void check_planes(const Frame& frame, const std::vector<PlaneId>& planes, int width, int height) {
   for (const PlaneId id : planes) {
     const Plane& plane = frame.planes.at(id);
-    const wire::PlaneSize size = wire::plane_size(id, width, height);
-    if (plane.width() != size.width || plane.height() != size.height)
-      throw InputError("plane " + plane_name(id), "must be " + size_text(size.width, size.height),
-                       size_text(plane.width(), plane.height()));
+    const PlaneSize size = plane_size(id, width, height);
+    const PlaneSize found{plane.width(), plane.height()};
+    if (found != size)
+      throw InputError("plane " + plane_name(id), "must be " + size_text(size), size_text(found));
   }
   for (const Plane& plane : frame.planes)
     if (std::find(planes.begin(), planes.end(), plane.id()) == planes.end())

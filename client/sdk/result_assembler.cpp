@@ -23,7 +23,7 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
           "an answer must announce all result planes");
   output_->planes = std::move(reuse);
   for (const PlaneId id : results_) {
-    const wire::PlaneSize size = wire::plane_size(id, width_, height_);
+    const PlaneSize size = plane_size(id, width_, height_);
     output_->planes.add(id, size.width, size.height);
   }
   return results_.empty();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/frame/plane.h"
@@ -40,5 +41,8 @@ std::vector<PlaneId> exr_planes(const std::filesystem::path& file,
 /// (or half), ids as uint. Replaces an existing file. Throws InputError for no planes or planes of
 /// different sizes, std::runtime_error if the file cannot be written.
 void write_exr(const std::filesystem::path& file, const PlaneSet& planes, ExrOptions options = {});
+/// The same for planes of any owner, none of them null.
+void write_exr_planes(const std::filesystem::path& file, std::span<const Plane* const> planes,
+                      ExrOptions options = {});
 
 }  // namespace holdfast

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string_view>
 
 #include "client/sequence/sequence_json.h"
 #include "core/frame/error.h"
+#include "core/frame/plane_size.h"
 
 namespace holdfast {
 namespace {
@@ -56,12 +58,35 @@ void check_frame(const Frame& frame, const SequenceHeader& header) {
   }
 }
 
-void check_size(std::int64_t index, const PlaneSet& planes, ImageSize size) {
-  for (const Plane& plane : planes)
-    if (plane.width() != size.width || plane.height() != size.height)
+/// Each plane must have the size that its id has in a frame of `header`'s size.
+void check_size(std::int64_t index, const PlaneSet& planes, const SequenceHeader& header) {
+  for (const Plane& plane : planes) {
+    const PlaneSize size = plane_size(plane.id(), header.width, header.height);
+    const PlaneSize found{plane.width(), plane.height()};
+    if (found != size)
       throw InputError(frame_subject(index) + ", plane " + plane_name(plane.id()),
-                       "must be " + std::to_string(size.width) + "x" + std::to_string(size.height),
-                       std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
+                       "must be " + size_text(size), size_text(found));
+  }
+}
+
+bool is_gradient(PlaneId id) { return id.kind == PlaneKind::kGradient; }
+
+/// The light that a plane belongs to, if it belongs to one.
+std::optional<std::uint32_t> light_of(PlaneId id) {
+  const bool per_light = plane_traits(id.kind).per_light ||
+                         (is_gradient(id) && id.component.kind == ComponentKind::kVisibility);
+  return per_light ? std::optional(id.component.light) : std::nullopt;
+}
+
+void check_lights(const fs::path& file, const PlaneSet& planes, const SequenceHeader& header) {
+  for (const Plane& plane : planes) {
+    const std::optional<std::uint32_t> light = light_of(plane.id());
+    if (light && std::none_of(header.lights.begin(), header.lights.end(),
+                              [&](const Light& known) { return known.id == *light; }))
+      throw InputError("file " + file.string() + ", plane " + plane_name(plane.id()),
+                       "must belong to a light of sequence.json",
+                       "of unknown light " + std::to_string(*light));
+  }
 }
 
 bool is_sequence_image(const std::string& name) {
@@ -124,19 +149,19 @@ void SequenceWriter::write_frame(const Frame& frame) {
     throw InputError(frame_subject(frame.index), "must come after the frame before",
                      "after " + std::to_string(frames_.back().index));
   check_frame(frame, header_);
-  check_size(frame.index, frame.planes, {header_.width, header_.height});
-  write_exr(sequence_file(dir_, "frame", frame.index), frame.planes, options_);
+  check_size(frame.index, frame.planes, header_);
+  std::vector<const Plane*> planes, gradients;
+  for (const Plane& plane : frame.planes)
+    (is_gradient(plane.id()) ? gradients : planes).push_back(&plane);
+  write_exr_planes(sequence_file(dir_, "frame", frame.index), planes, options_);
+  if (!gradients.empty())
+    write_exr_planes(sequence_file(dir_, "gradient", frame.index), gradients, options_);
   frames_.push_back(without_planes(frame));
 }
 
 void SequenceWriter::write_reference(std::int64_t index, const PlaneSet& planes) {
-  check_size(index, planes, {header_.width, header_.height});
+  check_size(index, planes, header_);
   write_exr(sequence_file(dir_, "reference", index), planes, options_);
-}
-
-void SequenceWriter::write_gradient(std::int64_t index, const PlaneSet& planes) {
-  check_size(index, planes, gradient_size({header_.width, header_.height}));
-  write_exr(sequence_file(dir_, "gradient", index), planes, options_);
 }
 
 void SequenceWriter::finish() { write_sequence_json(dir_ / kJsonName, header_, frames_); }
@@ -155,7 +180,7 @@ std::vector<std::int64_t> SequenceReader::frame_indices() const {
   return indices;
 }
 
-Frame SequenceReader::read_frame(std::int64_t index) const {
+Frame SequenceReader::read_frame(std::int64_t index, bool with_gradients) const {
   const auto it = std::find_if(frames_.begin(), frames_.end(),
                                [&](const Frame& frame) { return frame.index == index; });
   if (it == frames_.end())
@@ -168,20 +193,25 @@ Frame SequenceReader::read_frame(std::int64_t index) const {
     if (!frame.planes.find({kind, {}}))
       throw InputError("file " + file.string() + ", channel " + channel_name({kind, {}}, 0),
                        "must be present", "missing");
-  for (const Plane& plane : frame.planes) {
-    const std::uint32_t light = plane.id().component.light;
-    if (plane_traits(plane.id().kind).per_light &&
-        std::none_of(header_.lights.begin(), header_.lights.end(),
-                     [&](const Light& known) { return known.id == light; }))
-      throw InputError("file " + file.string() + ", plane " + plane_name(plane.id()),
-                       "must belong to a light of sequence.json",
-                       "of unknown light " + std::to_string(light));
+  check_lights(file, frame.planes, header_);
+  if (with_gradients && has_gradients()) {
+    const fs::path gradient_file = sequence_file(dir_, "gradient", index);
+    PlaneSet gradients = read_planes(gradient_file, gradient_size(), FileKind::kGradient,
+                                     "must hold gradient planes only");
+    check_lights(gradient_file, gradients, header_);
+    for (Plane& plane : gradients)
+      frame.planes.add(plane.id(), plane.width(), plane.height()) = std::move(plane);
   }
   return frame;
 }
 
-std::vector<PlaneId> SequenceReader::planes() const {
-  return exr_planes(sequence_file(dir_, "frame", frames_.front().index), size());
+std::vector<PlaneId> SequenceReader::planes(bool with_gradients) const {
+  const std::int64_t first = frames_.front().index;
+  std::vector<PlaneId> planes = exr_planes(sequence_file(dir_, "frame", first), size());
+  if (!with_gradients || !has_gradients()) return planes;
+  for (const PlaneId id : exr_planes(sequence_file(dir_, "gradient", first), gradient_size()))
+    planes.push_back(id);
+  return planes;
 }
 
 bool SequenceReader::has_reference(std::int64_t index) const {
@@ -193,13 +223,13 @@ PlaneSet SequenceReader::read_reference(std::int64_t index) const {
                      "must hold results only");
 }
 
-bool SequenceReader::has_gradient(std::int64_t index) const {
-  return fs::exists(sequence_file(dir_, "gradient", index));
+bool SequenceReader::has_gradients() const {
+  return fs::exists(sequence_file(dir_, "gradient", frames_.front().index));
 }
 
-PlaneSet SequenceReader::read_gradient(std::int64_t index) const {
-  return read_planes(sequence_file(dir_, "gradient", index), gradient_size(size()),
-                     FileKind::kGradient, "must hold gradient planes only");
+ImageSize SequenceReader::gradient_size() const {
+  const PlaneSize strata = plane_size({PlaneKind::kGradient, {}}, header_.width, header_.height);
+  return {strata.width, strata.height};
 }
 
 }  // namespace holdfast

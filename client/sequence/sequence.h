@@ -27,13 +27,12 @@ class SequenceWriter {
   /// old reference is never taken for one of the new frames. Throws InputError for a bad header.
   SequenceWriter(std::filesystem::path dir, SequenceHeader header, ExrOptions options = {});
 
-  /// Writes frame.####.exr with all planes of `frame.planes`. Indices must increase; planes have
-  /// the header's size; numbers are finite; lights are in the header. Throws InputError otherwise.
+  /// Writes frame.####.exr with the planes of `frame.planes`, and gradient.####.exr with those that
+  /// are gradients, if there are any. Indices must increase; planes have the size that the header
+  /// gives them; numbers are finite; lights are in the header. Throws InputError otherwise.
   void write_frame(const Frame& frame);
   /// Writes reference.####.exr: converged results, under result names.
   void write_reference(std::int64_t index, const PlaneSet& planes);
-  /// Writes gradient.####.exr: gradient planes of ceil(width/3) x ceil(height/3).
-  void write_gradient(std::int64_t index, const PlaneSet& planes);
   /// Writes sequence.json with the frames so far. May be called again after more frames.
   void finish();
 
@@ -56,17 +55,20 @@ class SequenceReader {
   /// Frame indices in the order of sequence.json, strictly increasing; any start, gaps allowed.
   std::vector<std::int64_t> frame_indices() const;
   /// A frame with its planes (depth and normal at least), camera and the transforms it lists.
-  Frame read_frame(std::int64_t index) const;
+  /// `with_gradients`: also the planes of gradient.####.exr, which every frame has if the first
+  /// has.
+  Frame read_frame(std::int64_t index, bool with_gradients = false) const;
   /// The planes of the first frame.
-  std::vector<PlaneId> planes() const;
+  std::vector<PlaneId> planes(bool with_gradients = false) const;
 
   bool has_reference(std::int64_t index) const;
   PlaneSet read_reference(std::int64_t index) const;
-  bool has_gradient(std::int64_t index) const;
-  PlaneSet read_gradient(std::int64_t index) const;
+  /// True if the sequence has gradient planes: if its first frame has.
+  bool has_gradients() const;
 
  private:
   ImageSize size() const { return {header_.width, header_.height}; }
+  ImageSize gradient_size() const;
 
   std::filesystem::path dir_;
   SequenceHeader header_;
@@ -76,10 +78,5 @@ class SequenceReader {
 /// DIR/frame.0007.exr for kind "frame" and index 7; results use the same names.
 std::filesystem::path sequence_file(const std::filesystem::path& dir, const char* kind,
                                     std::int64_t index);
-
-/// Size of the gradient planes of a frame: one sample for each 3x3 stratum.
-inline ImageSize gradient_size(ImageSize frame) {
-  return {(frame.width + 2) / 3, (frame.height + 2) / 3};
-}
 
 }  // namespace holdfast

@@ -65,7 +65,7 @@ Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
 std::size_t Scratch::bytes() const {
   return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() + effect.bytes() +
          window.between.bytes() + window.spread.bytes() + blend.bytes() + radiance_blend.bytes() +
-         filter.bytes() + debug.bytes();
+         filter.bytes() + gradients.bytes() + debug.bytes();
 }
 
 ComponentFilter::ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width,
@@ -166,6 +166,8 @@ void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
   HistorySources sources;
   if (recipe_.blending != Blending::kNoHistory) sources.surface = input.surface;
   if (sources.surface != nullptr && follows_effect_) sources.effect = &s.effect;
+  if (input.gradients && sources.surface != nullptr)
+    sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;

@@ -4,6 +4,7 @@
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
 #include "core/history/glossy_history.h"
+#include "core/history/gradients.h"
 #include "core/motion/shadow_field.h"
 
 namespace holdfast {
@@ -21,7 +22,8 @@ struct Scratch {
   BlendScratch blend;
   RadianceBlendScratch radiance_blend;
   FilterScratch filter;
-  Channels<float> debug;  ///< DebugChannel; only where debug planes are asked for
+  GradientScratch gradients;  ///< samples of the component; only where a component has them
+  Channels<float> debug;      ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
   Scratch(int width, int height, const Plan& plan, bool debug);
@@ -36,6 +38,7 @@ struct ComponentInput {
   BlockerPlanes blockers;
   GlossyPlanes reflections;  ///< of a glossy component that follows them
   FrameKey key;
+  bool gradients = false;  ///< Scratch::gradients holds samples of the component
 };
 
 /// Filters one component in time and space, and keeps its history.

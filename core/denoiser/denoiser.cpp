@@ -10,6 +10,7 @@
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
 #include "core/frame/error.h"
+#include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
@@ -34,15 +35,14 @@ class StageTimer {
   Clock::time_point last_;
 };
 
-/// The planes of `frame` must be exactly those of the session, each of the session's size.
+/// The planes of `frame` must be exactly those of the session, each of its size.
 void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
   for (const PlaneId id : config.planes) {
     const Plane& plane = planes.at(id);
-    if (plane.width() != config.width || plane.height() != config.height)
-      throw InputError(
-          "plane " + plane_name(id),
-          "must be " + std::to_string(config.width) + "x" + std::to_string(config.height),
-          std::to_string(plane.width()) + "x" + std::to_string(plane.height()));
+    const PlaneSize size = plane_size(id, config.width, config.height);
+    const PlaneSize found{plane.width(), plane.height()};
+    if (found != size)
+      throw InputError("plane " + plane_name(id), "must be " + size_text(size), size_text(found));
   }
   for (const Plane& plane : planes)
     if (std::find(config.planes.begin(), config.planes.end(), plane.id()) == config.planes.end())
@@ -63,6 +63,7 @@ class Denoiser::Impl {
       if (plan.roughness) g.roughness = Channels<float>(c.width, c.height, 1);
       if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
     }
+    if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height);
     if (plan.history) surface = SurfaceHistory(c.width, c.height);
     for (const std::uint32_t light : plan.shaded_lights)
       shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height);
@@ -129,6 +130,12 @@ class Denoiser::Impl {
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
     ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, {}, {}};
     input.key = {config.seed, frame.index};
+    input.gradients = entry.gradients;
+    if (entry.gradients) {
+      const PlaneId gradient{PlaneKind::kGradient, entry.component};
+      count_repairs(report, gradient,
+                    load_gradients(frame.planes.at(gradient), kLargestRadiance, scratch.gradients));
+    }
     if (entry.component.kind == ComponentKind::kVisibility && entry.has_footprint) {
       const std::uint32_t light = entry.component.light;
       input.light = &*std::find_if(config.lights.begin(), config.lights.end(),
@@ -211,6 +218,12 @@ const std::vector<std::string>& recipe_names() {
     return out;
   }();
   return names;
+}
+
+bool recipe_uses(std::string_view recipe, PlaneKind kind) {
+  if (kind != PlaneKind::kGradient) return true;
+  return std::any_of(all_recipes().begin(), all_recipes().end(),
+                     [&](const Recipe& r) { return r.name == recipe && r.gradient_levels > 0; });
 }
 
 const std::vector<std::string>& preset_names() {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/frame/frame.h"
@@ -40,7 +41,7 @@ struct FrameReport {
   std::vector<StageTime> stages;
   bool history_reset = false;         ///< first frame, cut or reset
   double mean_history_frames = 0;     ///< over surface pixels, all components
-  std::vector<RepairCount> repaired;  ///< depth, normal and signal planes with repairs
+  std::vector<RepairCount> repaired;  ///< depth, normal, signal and gradient planes with repairs
   std::uint64_t non_finite_out = 0;   ///< always 0; counted, not assumed
 };
 
@@ -76,6 +77,9 @@ class Denoiser {
 
 /// Names of the recipes, in the order of the documentation.
 const std::vector<std::string>& recipe_names();
+/// Whether planes of that kind can change the results of the recipe of that name, so that it is
+/// worth sending them. Gradient planes: only for recipes with gradients, never for unknown names.
+bool recipe_uses(std::string_view recipe, PlaneKind kind);
 /// Names of the presets, fastest first.
 const std::vector<std::string>& preset_names();
 /// Result planes of a configuration: the composite, then each component's planes.

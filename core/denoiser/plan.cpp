@@ -45,14 +45,21 @@ bool is_shaded_here(const DenoiserConfig& config, const Light& light) {
          has(config, {PlaneKind::kAlbedo, {}});
 }
 
+/// A gradient plane must belong to a component among the session's planes.
+void check_gradient(const DenoiserConfig& config, PlaneId id) {
+  if (id.kind == PlaneKind::kGradient && !has(config, component_plane(id.component)))
+    throw InputError("plane " + plane_name(id), "must belong to a component of the session",
+                     "of " + component_name(id.component) + ", which is not among its planes");
+}
+
 void check_planes(const DenoiserConfig& config) {
   std::set<PlaneId> ids;
   for (const PlaneId id : config.planes) {
     const std::string subject = "plane " + plane_name(id);
     if (!ids.insert(id).second) throw InputError(subject, "must be listed once", "listed twice");
-    if (id.kind >= PlaneKind::kGradient)
-      throw InputError(subject, "must be an input plane of the session's size",
-                       id.kind == PlaneKind::kGradient ? "a gradient plane" : "a result plane");
+    if (id.kind > PlaneKind::kGradient)
+      throw InputError(subject, "must be an input plane", "a result plane");
+    check_gradient(config, id);
     const bool known = std::any_of(config.lights.begin(), config.lights.end(),
                                    [&](const Light& l) { return l.id == id.component.light; });
     if (plane_traits(id.kind).per_light && !known)
@@ -97,7 +104,10 @@ Plan Plan::make(const DenoiserConfig& config) {
       plan.motion = follows && has(config, {PlaneKind::kMotion, {}});
     }
   }
-  for (const Entry& entry : plan.components) {
+  for (Entry& entry : plan.components) {
+    entry.gradients =
+        recipe.gradient_levels > 0 && has(config, {PlaneKind::kGradient, entry.component});
+    plan.any_gradients |= entry.gradients;
     plan.any_radiance |= entry.component.kind != ComponentKind::kVisibility;
     plan.any_footprint |= entry.has_footprint;
     plan.any_effect |= entry.follows_effect;
@@ -146,6 +156,9 @@ std::string Plan::text() const {
     if (history)
       text +=
           name + ": history along " + vectors_of(entry) + " vectors, " + blending_of(recipe) + "\n";
+    if (recipe.gradient_levels > 0)
+      text += name + (entry.gradients ? ": history replaced sooner by gradient samples\n"
+                                      : ": no gradient samples, history at its fixed pace\n");
     const int levels = recipe.svgf_filter ? recipe.svgf_levels
                        : visibility       ? recipe.visibility_filter.levels
                                           : recipe.radiance_filter.levels;

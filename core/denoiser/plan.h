@@ -17,6 +17,7 @@ struct Plan {
     bool has_footprint = false;   ///< samples say how smooth it is: blocker planes, or glossy hits
                                   ///< with roughness
     bool follows_effect = false;  ///< by a vector of its own, besides the surface's
+    bool gradients = false;       ///< the recipe asks for gradient samples and frames bring them
   };
   Recipe recipe;
   std::vector<Entry> components;
@@ -27,6 +28,7 @@ struct Plan {
   bool any_radiance = false;   ///< a component has three channels
   bool any_footprint = false;  ///< a component has a footprint
   bool any_effect = false;     ///< a component follows its effect
+  bool any_gradients = false;  ///< a component has gradient samples
   bool roughness = false;      ///< roughness is kept with the guides
   bool motion = false;         ///< the client's motion vectors are kept with the guides
 

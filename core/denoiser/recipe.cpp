@@ -22,6 +22,8 @@ std::vector<Recipe> make_recipes() {
   const Recipe traditional = base("traditional");
   Recipe clamp = base("clamp");
   clamp.accumulation.rectification = Rectification::kClamp;
+  Recipe clamp_box = base("clamp-box");
+  clamp_box.accumulation.rectification = Rectification::kClampBox;
   Recipe specular = base("specular");
   specular.glossy = GlossyVectors::kSpecular;
   Recipe specular_clamp = specular;
@@ -30,19 +32,23 @@ std::vector<Recipe> make_recipes() {
   Recipe svgf = base("svgf");
   svgf.accumulation.alpha = 0.2f;  // SVGF sec. 4.1
   svgf.svgf_filter = true;
+  Recipe asvgf = svgf;
+  asvgf.name = "asvgf";
+  asvgf.gradient_levels = 1;  // ours, as for paper-adaptive: best of 1..5 on fence and cylinder
   Recipe paper = base("paper");
   paper.shadow = ShadowVectors::kPaper;
   paper.glossy = GlossyVectors::kStochastic;
   paper.indirect = DisocclusionVectors::kDual;
   paper.accumulation.rectification = Rectification::kClampFallback;
+  Recipe paper_adaptive = paper;
+  paper_adaptive.name = "paper-adaptive";
+  paper_adaptive.gradient_levels = 2;
   Recipe reliable = base("reliable", Blending::kExpectedError);
   reliable.shadow = ShadowVectors::kBorrowed;
   reliable.glossy = GlossyVectors::kRelative;
   reliable.indirect = DisocclusionVectors::kDual;
-  Recipe xr = base("xrel");
-  xr.glossy = GlossyVectors::kRelative;
-  xr.indirect = DisocclusionVectors::kDual;
-  return {spatial, traditional, clamp, specular, specular_clamp, svgf, paper, reliable, xr};
+  return {spatial, traditional, clamp, clamp_box,      specular, specular_clamp,
+          svgf,    asvgf,       paper, paper_adaptive, reliable};
 }
 
 }  // namespace

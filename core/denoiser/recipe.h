@@ -38,7 +38,9 @@ struct Recipe {
   ShadowVectors shadow = ShadowVectors::kNone;
   GlossyVectors glossy = GlossyVectors::kNone;
   DisocclusionVectors indirect = DisocclusionVectors::kNone;
-  AccumulationRule accumulation;       ///< of kExponential
+  AccumulationRule accumulation;  ///< of kExponential
+  int gradient_levels = 0;        ///< of the filter of gradient samples, which say where to replace
+                                  ///< history sooner; 0: does not use them
   ExpectedErrorRule visibility_blend;  ///< of kExpectedError
   RadianceBlendRule glossy_blend;
   RadianceBlendRule indirect_blend;

@@ -40,10 +40,11 @@ struct ComponentHistory {
 };
 
 /// The histories that a component may follow: its surface's, and that of the effect itself (shadow,
-/// reflection, disocclusion). A null pointer: none of that kind.
+/// reflection, disocclusion); and how fast to leave them. Null: none of that kind.
 struct HistorySources {
   const SurfaceHistory* surface = nullptr;
   const EffectHistory* effect = nullptr;
+  ChannelView<const float> antilag = {};  ///< lambda of `antilag_of_gradients`, by stratum
 };
 
 /// Optional record of what a temporal pass did, for the debug planes: motion_px X, Y, frames of

@@ -101,6 +101,19 @@ TEST_F(EndToEnd, ReplayWritesTheBitsOfTheCoreForARenderedShadow) {
   }
 }
 
+TEST_F(EndToEnd, GradientsAreSentOnlyToRecipesThatUseThem) {
+  render("fence", {"--frames", "4", "--speed", "4", "--reference-spp", "0"});
+  const int gradients = 4 * (22 * 12) * 2 * 4;  // frames, strata of 64x36, (now, then), bytes
+  const auto fixed = replay("svgf", {"--recipe", "svgf"});
+  const auto adaptive = replay("asvgf", {"--recipe", "asvgf"});
+  EXPECT_EQ(adaptive["bytes_in"].get<int>(), fixed["bytes_in"].get<int>() + gradients);
+  const auto last = [&](const char* out) { return read_exr(sequence_file(dir / out, "frame", 3)); };
+  EXPECT_FALSE(test::same_bits(last("svgf"), last("asvgf")));
+  render("fence", {"--frames", "4", "--speed", "4", "--reference-spp", "0", "--no-gradients"});
+  EXPECT_EQ(replay("none", {"--recipe", "asvgf"})["bytes_in"], fixed["bytes_in"]);
+  EXPECT_TRUE(test::same_bits(last("svgf"), last("none")));
+}
+
 TEST_F(EndToEnd, EveryRecipeIsBetterThanTheNoise) {
   render("fence", {"--frames", "4", "--reference-spp", "64"});
   rewrite_frames([](PlaneSet&) {});
@@ -182,14 +195,15 @@ TEST_F(EndToEnd, TheDemonstrationLeavesAReportPicturesAndFigures) {
   const auto json = nlohmann::json::parse(test::file_text(dir / "demo.json"));
   EXPECT_EQ(keys(json), (Names{"scenes", "seconds"}));
   EXPECT_EQ(keys(json["scenes"]), (Names{"cylinder", "fence"}));
+  const Names recipes{"spatial", "traditional", "clamp", "svgf", "paper", "reliable"};
   for (const auto& scene : json["scenes"]) {
-    ASSERT_EQ(scene.size(), 6u);
-    for (const std::string& recipe : recipe_names())
+    ASSERT_EQ(scene.size(), recipes.size());
+    for (const std::string& recipe : recipes)
       for (const char* region : {"image", "effect"})
         EXPECT_EQ(scene[recipe][region]["frames"], 3) << recipe;
   }
   const std::string page = test::file_text(dir / "demo/report.html");
-  for (const std::string& recipe : recipe_names())
+  for (const std::string& recipe : recipes)
     EXPECT_NE(page.find("data-name=\"" + recipe + "\""), std::string::npos) << recipe;
   EXPECT_GT(std::filesystem::file_size(dir / "demo/demo.png"), 1000u);
   EXPECT_TRUE(std::filesystem::exists(dir / "demo/png/fence.light0.visibility.reliable.error.png"));

@@ -95,6 +95,32 @@ TEST(Accumulate, ClampsHistoryToMeanAndStandardDeviationsOfNineNeighbours) {
   EXPECT_NEAR(h.now.data[0].at(1, 1), 0.1f * 0.5f + 0.9f * 0.7f, 1e-5f);
 }
 
+TEST(Accumulate, ClampBoxClampsHistoryToLeastAndGreatestOfNineNeighbours) {
+  StillHistory h = noisy_neighbourhood(1);
+  h.noisy[0].at(2, 1) = 0.9f;
+  h.noisy[0].at(0, 1) = 0.2f;
+  const AccumulationRule rule{.alpha = 0.1f, .rectification = Rectification::kClampBox};
+  accumulate(h.guides, h.noisy, h.by_surface(), rule, h.before, h.now, nullptr);
+  EXPECT_NEAR(h.now.data[0].at(1, 1), 0.1f * 0.5f + 0.9f * 0.9f, 1e-6f);
+  test::fill(h.before.data[0], 0.0f);
+  accumulate(h.guides, h.noisy, h.by_surface(), rule, h.before, h.now, nullptr);
+  EXPECT_NEAR(h.now.data[0].at(1, 1), 0.1f * 0.5f + 0.9f * 0.2f, 1e-6f);
+  test::fill(h.before.data[0], 0.3f);
+  accumulate(h.guides, h.noisy, h.by_surface(), rule, h.before, h.now, nullptr);
+  EXPECT_NEAR(h.now.data[0].at(1, 1), 0.1f * 0.5f + 0.9f * 0.3f, 1e-6f) << "inside the box";
+}
+
+TEST(Accumulate, ClampBoxOfColoursActsInYCoCg) {
+  StillHistory h = noisy_neighbourhood(3);  // grey: Co = Cg = 0 everywhere
+  test::fill(h.before.data[0], 0.6f);
+  test::fill(h.before.data[1], 0.5f);
+  test::fill(h.before.data[2], 0.4f);
+  const AccumulationRule rule{.alpha = 0.0f, .rectification = Rectification::kClampBox};
+  accumulate(h.guides, h.noisy, h.by_surface(), rule, h.before, h.now, nullptr);
+  for (int c = 0; c < 3; ++c)  // Y = 1/2 is inside, Co = 1/10 becomes 0
+    EXPECT_NEAR(h.now.data[c].at(1, 1), 0.5f, 1e-5f) << c;
+}
+
 TEST(Accumulate, ClampLeavesSkyNeighboursOut) {
   StillHistory h = noisy_neighbourhood(1);
   for (int k = 0; k < 9; ++k)
@@ -102,9 +128,11 @@ TEST(Accumulate, ClampLeavesSkyNeighboursOut) {
       test::set_pixel(h.guides, k % 3, k / 3, 0.0f, glm::vec3(0));
       h.noisy[0].at(k % 3, k / 3) = 100.0f;
     }
-  accumulate(h.guides, h.noisy, h.by_surface(), {.rectification = Rectification::kClamp}, h.before,
-             h.now, nullptr);
-  EXPECT_NEAR(h.now.data[0].at(1, 1), 0.5f, 1e-5f);
+  for (const auto rule : {Rectification::kClamp, Rectification::kClampBox}) {
+    accumulate(h.guides, h.noisy, h.by_surface(), {.rectification = rule}, h.before, h.now,
+               nullptr);
+    EXPECT_NEAR(h.now.data[0].at(1, 1), 0.5f, 1e-5f);
+  }
 }
 
 TEST(Accumulate, ClampOfColoursLeavesHistoryInsideTheBoxUnchanged) {

@@ -206,7 +206,7 @@ TEST(Planes, ShadowOnlySceneHasNoOtherComponents) {
   scene.components = {true, false, false};
   Renderer renderer(scene, small_settings(8, 6));
   const Frame frame = renderer.frame(0);
-  EXPECT_EQ(frame.planes.size(), 8u);  // depth, normal, objectId and five of the light
+  EXPECT_EQ(frame.planes.size(), 9u);  // depth, normal, objectId, five of the light, its gradients
   EXPECT_EQ(frame.planes.find({PlaneKind::kGlossy, {}}), nullptr);
   EXPECT_EQ(frame.planes.find({PlaneKind::kIndirect, {}}), nullptr);
   EXPECT_EQ(renderer.reference(0).size(), 2u);  // composite and visibility

@@ -80,19 +80,65 @@ TEST(Sequence, EverythingWrittenIsReadBack) {
   EXPECT_TRUE(reader.read_frame(1).objects.empty());
 }
 
-TEST(Sequence, GradientsHaveOneSampleForEach3x3Stratum) {
+constexpr PlaneId kGradient{PlaneKind::kGradient, {ComponentKind::kGlossy, 0}};
+
+/// Two frames with gradients in `dir`.
+void write_with_gradients(const std::filesystem::path& dir) {
+  SequenceWriter writer(dir, sample_header());
+  for (const std::int64_t index : {0, 1}) {
+    Frame frame = sample_frame(index);
+    frame.planes.add(kGradient, 3, 2).channel(1).at(2, 1) = 4.0f + static_cast<float>(index);
+    writer.write_frame(frame);
+  }
+  writer.finish();
+}
+
+TEST(Sequence, GradientsHaveOneSampleForEach3x3StratumInAFileOfTheirOwn) {
   const TempDir dir;
-  const PlaneId id{PlaneKind::kGradient, {ComponentKind::kGlossy, 0}};
-  PlaneSet gradient;
-  gradient.add(id, 3, 2).channel(1).at(2, 1) = 4.0f;
+  write_with_gradients(dir / "s");
+  EXPECT_EQ(exr_planes(dir / "s/gradient.0001.exr", ImageSize{3, 2}), std::vector{kGradient});
+  const SequenceReader reader(dir / "s");
+  ASSERT_TRUE(reader.has_gradients());
+  EXPECT_EQ(reader.read_frame(1).planes.find(kGradient), nullptr) << "only where asked for";
+  EXPECT_EQ(reader.planes().size(), 2u);
+  EXPECT_EQ(reader.planes(true).back(), kGradient);
+  EXPECT_EQ(reader.read_frame(1, true).planes.at(kGradient).channel(1).at(2, 1), 5.0f);
+  SequenceWriter writer(dir / "t", sample_header());
+  Frame frame = sample_frame(0);
+  frame.planes.add(kGradient, 8, 5);
+  expect_input_error([&] { writer.write_frame(frame); }, {"gradient.glossy", "3x2", "8x5"});
+}
+
+TEST(Sequence, WithoutGradientsGivesNone) {
+  const TempDir dir;
   SequenceWriter writer(dir / "s", sample_header());
   writer.write_frame(sample_frame(0));
-  writer.write_gradient(0, gradient);
   writer.finish();
   const SequenceReader reader(dir / "s");
-  ASSERT_TRUE(reader.has_gradient(0));
-  EXPECT_EQ(reader.read_gradient(0).at(id).channel(1).at(2, 1), 4.0f);
-  expect_input_error([&] { writer.write_gradient(0, composite(1)); }, {"composite", "3x2", "8x5"});
+  EXPECT_FALSE(reader.has_gradients());
+  EXPECT_EQ(reader.read_frame(0, true).planes.size(), 2u);
+  EXPECT_EQ(reader.planes(true).size(), 2u);
+}
+
+TEST(Sequence, NamesWhatIsWrongWithAGradientFile) {
+  const TempDir dir;
+  write_with_gradients(dir / "s");
+  const SequenceReader reader(dir / "s");
+  const std::string file = "gradient.0001.exr";
+  const auto read_with = [&](PlaneId id, int width, int height) {
+    PlaneSet planes;
+    planes.add(id, width, height);
+    write_exr(dir / "s" / file, planes);
+    return [&] { reader.read_frame(1, true); };
+  };
+  expect_input_error(read_with(kGradient, 8, 5), {file, "3x2", "8x5"});
+  expect_input_error(read_with({PlaneKind::kGlossy, {}}, 3, 2),
+                     {file, "must hold gradient planes only", "glossy"});
+  expect_input_error(
+      read_with({PlaneKind::kGradient, {ComponentKind::kVisibility, 99}}, 3, 2),
+      {file, "gradient.light99.visibility", "light of sequence.json", "unknown light 99"});
+  std::filesystem::remove(dir / "s" / file);
+  expect_input_error([&] { reader.read_frame(1, true); }, {file, "missing"});
 }
 
 TEST(Sequence, AnOldSequenceLeavesNoReferenceBehind) {

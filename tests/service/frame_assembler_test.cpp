@@ -90,6 +90,14 @@ TEST_F(FrameAssembly, NamesAPlaneOfTheWrongSize) {
   EXPECT_EQ(assemble(), "plane light0.visibility must be 7x5, but it is 7x6");
 }
 
+TEST_F(FrameAssembly, NamesAGradientPlaneOfTheWrongSize) {
+  config.denoiser.planes.push_back({PlaneKind::kGradient, {ComponentKind::kVisibility, 0}});
+  v1::FramePlane& gradient = *begin().add_planes();
+  gradient = begin().planes(0);  // of the frame's size
+  gradient.set_plane(static_cast<std::uint32_t>(config.denoiser.planes.size() - 1));
+  EXPECT_EQ(assemble(), "plane gradient.light0.visibility must be 3x2, but it is 7x5");
+}
+
 TEST_F(FrameAssembly, NamesAPlaneThatIsNotAnnounced) {
   begin().mutable_planes()->RemoveLast();
   EXPECT_EQ(assemble(),

@@ -32,6 +32,12 @@ TEST(RenderedFrames, HaveInputOnWhichHistoryActs) {
        {PlaneKind::kBlockerDistance, PlaneKind::kBlockerId, PlaneKind::kLightSample})
     EXPECT_NE(std::find(planes.begin(), planes.end(), PlaneId::of_light(kind, 0)), planes.end());
   EXPECT_NE(fence.frames[0].lights.at(0), fence.frames[1].lights.at(0)) << "the light moves";
+  const PlaneId gradient{PlaneKind::kGradient, {ComponentKind::kVisibility, 0}};
+  ASSERT_NE(std::find(planes.begin(), planes.end(), gradient), planes.end());
+  EXPECT_EQ(fence.frames[3].planes.at(gradient).width(), 32);
+  const Rendered adaptive("fence", "asvgf", 1), fixed("fence", "svgf", 1);
+  EXPECT_FALSE(test::same_bits(test::direct(adaptive.config, adaptive.frames).back(),
+                               test::direct(fixed.config, fixed.frames).back()));
   const Rendered plain("fence", "spatial", 1);
   EXPECT_FALSE(test::same_bits(test::direct(fence.config, fence.frames).back(),
                                test::direct(plain.config, plain.frames).back()));
