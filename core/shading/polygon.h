@@ -31,7 +31,7 @@ T angle_from(T sine, T cosine) {
 }
 
 /// Corners of the polygon that stands for a disk or a sphere: its area is the disk's, and the
-/// irradiance it sends is the disk's to about one per cent (tests/core/direct_light_test.cpp).
+/// irradiance it sends is the disk's to about one per cent (tests/core/ltc_light_test.cpp).
 inline constexpr int kDiskCorners = 16;
 
 /// A convex polygon as seen from the origin; only directions matter for what it radiates.

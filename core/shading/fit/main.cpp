@@ -60,8 +60,8 @@ std::vector<Cell> fit_table() {
 }
 
 void write_table(std::ostream& out, const std::vector<Cell>& cells) {
-  out << "// Written by holdfast_fit_ltc; core/DESIGN.md says how. Layout: "
-         "core/shading/ltc_layout.h\n";
+  out << "// Written by: holdfast_fit_ltc core/shading/generated/ltc_table.inc (core/DESIGN.md).\n"
+         "// Layout: core/shading/ltc_layout.h\n";
   for (const Cell& cell : cells) {
     for (const double value : cell) {
       char text[32];
