@@ -68,6 +68,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
   measure(input, tracer ? &*tracer : nullptr, scratch);
+  input.timer.end("statistics", 1);
 
   const bool with_shadow = tracer && input.surface != nullptr && uses_shadow_vectors();
   if (with_shadow) {
@@ -77,9 +78,12 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     trace_shadow_history(input.frames, *tracer, rule, means[kField + kShadowValid],
                          means[kField + kShadowRatio],
                          std::as_const(scratch.measured)[kField + kShadowRatio], scratch.shadow);
+    input.timer.end("vectors", 1);
   }
   blend(input, with_shadow, scratch);
+  input.timer.end("blend", 1);
   filter(input, tracer.has_value(), scratch, out);
+  input.timer.end("filter", 1);
   count_history(input.frames.now);
 }
 

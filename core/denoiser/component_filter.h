@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/denoiser/recipe.h"
+#include "core/denoiser/stage_timer.h"
 #include "core/history/frame_pair.h"
 
 namespace holdfast {
@@ -30,6 +31,7 @@ struct ComponentInput {
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
   BlockerPlanes blockers;
+  StageTimer& timer;  ///< told of each stage that ends
 };
 
 /// Filters one component in time and space, and keeps its history.
