@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
+#include "core/spatial/filter_rows.h"
 #include "core/spatial/svgf_filter.h"
 
 namespace holdfast {
@@ -90,13 +90,13 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
 void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* tracer,
                               Scratch& s) const {
   const int width = input.frames.now.view.width, height = input.frames.now.view.height;
-  const Signal noisy{&s.noisy, channels_, {}, {}};
+  const int last = channels_ - 1;
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float l = noisy.luminance_at(x, y);
-      s.measured[kLuminance].at(x, y) = l;
-      s.measured[kSquare].at(x, y) = l * l;
-    }
+    luminance_row({{s.noisy[0].row(y), s.noisy[last / 2].row(y), s.noisy[last].row(y)},
+                   channels_,
+                   width,
+                   s.measured[kLuminance].row(y),
+                   s.measured[kSquare].row(y)});
   });
   if (tracer != nullptr) tracer->measure(s.measured, kField);
   // Where a visibility is constant and nothing blocks, so are all other channels.
@@ -106,18 +106,23 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
   s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
   window_means(input.frames.now, measured, tracer != nullptr ? kMeasured : kField, kStatisticsStep,
                s.window, s.means, &s.measured_activity);
+  const bool visibility = channels_ == 1;
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float mean_square = square(s.means[kLuminance].at(x, y));
-      const float floor = channels_ == 1 ? kVisibilityVarianceFloor
-                                         : kRelativeVarianceFloor * mean_square + kVarianceFloor;
-      s.means[kSampleVariance].at(x, y) = std::max(s.means[kSquare].at(x, y) - mean_square, floor);
-      if (tracer == nullptr) continue;
-      const float valid = s.means[kField + kShadowValid].at(x, y);
-      for (int c = 0; c < 3; ++c)
-        s.footprint[c].at(x, y) =
-            valid > 0.0f ? s.means[kField + kShadowPrecision + c].at(x, y) / valid : 0.0f;
+    StatisticsRow row{};
+    row.mean = s.means[kLuminance].row(y);
+    row.square = s.means[kSquare].row(y);
+    row.variance = s.means[kSquare].row(y);
+    row.floor_share = visibility ? 0.0f : kRelativeVarianceFloor;
+    row.floor_0 = visibility ? kVisibilityVarianceFloor : kVarianceFloor;
+    row.width = width;
+    if (tracer != nullptr) {
+      row.valid = s.means[kField + kShadowValid].row(y);
+      for (int c = 0; c < 3; ++c) {
+        row.precision[c] = s.means[kField + kShadowPrecision + c].row(y);
+        row.footprint[c] = s.footprint[c].row(y);
+      }
     }
+    statistics_row(row);
   });
 }
 
