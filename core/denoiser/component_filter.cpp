@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/denoiser/traffic.h"
 #include "core/kernels/parallel.h"
 #include "core/spatial/filter_rows.h"
 #include "core/spatial/svgf_filter.h"
@@ -68,7 +69,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
   measure(input, tracer ? &*tracer : nullptr, scratch);
-  input.timer.end("statistics", 1);
+  input.timer.end("statistics", statistics_traffic(channels_, tracer.has_value()));
 
   const bool with_shadow = tracer && input.surface != nullptr && uses_shadow_vectors();
   if (with_shadow) {
@@ -78,12 +79,14 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     trace_shadow_history(input.frames, *tracer, rule, means[kField + kShadowValid],
                          means[kField + kShadowRatio],
                          std::as_const(scratch.measured)[kField + kShadowRatio], scratch.shadow);
-    input.timer.end("vectors", 1);
+    input.timer.end("vectors", vectors_traffic());
   }
   blend(input, with_shadow, scratch);
-  input.timer.end("blend", 1);
+  const bool candidates =
+      recipe_.vectors == HistoryVectors::kCandidates && input.surface != nullptr;
+  input.timer.end("blend", blend_traffic(channels_, candidates));
   filter(input, tracer.has_value(), scratch, out);
-  input.timer.end("filter", 1);
+  input.timer.end("filter", filter_traffic(channels_, recipe_, tracer.has_value()));
   count_history(input.frames.now);
 }
 

@@ -76,13 +76,22 @@ bool keep_still(const FramePair& frames, bool rigid, const int* slots, const std
   const float* depth = frames.now.depth().row(y) + x;
   const SceneMotion& scene = frames.scene;
   Taps* taps = out.taps[0].row(y) + x;
+  const Taps first = identity_taps(frames.previous, x, y);
+  const int last_column = frames.now.view.width - 1;
   int left = 0;
   for (int i = 0; i < count; ++i) {
     const bool surface = depth[i] > 0.0f;
     const bool still = rigid && same[i] != 0 && scene.object(slots[i]).at_rest;
     wanted[i] = surface && !still;
     left += wanted[i];
-    taps[i] = surface && still ? identity_taps(frames.previous, x + i, y) : Taps{};
+    if (!surface || !still) {
+      taps[i] = Taps{};
+    } else if (x + i < last_column) {
+      taps[i] = first;
+      taps[i].offset += i;
+    } else {
+      taps[i] = identity_taps(frames.previous, x + i, y);
+    }
   }
   return left == 0;
 }

@@ -89,9 +89,12 @@ void ShadowTracer::measure(Channels<float>& out, int first) const {
 }
 
 /// Light samples of `count` pixels from (x, y) on, relative to the camera; returns their w. Samples
-/// that are not blocked may be left out.
+/// that are not blocked may be left out, as is a block without blocker.
 float ShadowTracer::sample_lights(int x, int y, int count, float (*light)[kFollowBlock]) const {
   const float *u = u_.row(y) + x, *v = v_.row(y) + x, *distance = distance_.row(y) + x;
+  const bool any = std::any_of(distance, distance + count,
+                               [](float d) { return d <= std::numeric_limits<float>::max(); });
+  if (!any) return 1.0f;
   if (light_.shape == LightShape::kRectangle) {  // affine in the sample
     const glm::vec4 start = relative_from_light_ * light_point(light_, 0.0f, 0.0f);
     const glm::vec4 along_u = relative_from_light_[0] * static_cast<float>(light_.width);
