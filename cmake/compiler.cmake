@@ -33,3 +33,10 @@ function(holdfast_kernel_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
     "-O3;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast;-fno-tree-loop-distribute-patterns")
 endfunction()
+
+# The same without fused sums, for kernels whose results decide what is followed: such a choice must
+# not depend on the instruction set.
+function(holdfast_exact_kernel_sources)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+    "-O3;-fno-trapping-math;-fno-math-errno;-ffp-contract=off;-fno-tree-loop-distribute-patterns")
+endfunction()
