@@ -26,8 +26,17 @@ function(holdfast_add_library name)
 endfunction()
 
 # Kernel files alone may assume that arithmetic does not trap, which lets the compiler vectorise
-# selects. Never -ffast-math: tests for NaN must keep working.
+# selects, and may fuse a product with the sum that follows it, which rounds once instead of twice.
+# Loops that copy or fill stay loops: their rows are too short for a call, or for "rep movs".
+# Never -ffast-math: tests for NaN must keep working.
 function(holdfast_kernel_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
-    "-O3;-fno-trapping-math;-fno-math-errno")
+    "-O3;-fno-trapping-math;-fno-math-errno;-ffp-contract=fast;-fno-tree-loop-distribute-patterns")
+endfunction()
+
+# The same without fused sums, for kernels whose results decide what is followed: such a choice must
+# not depend on the instruction set.
+function(holdfast_exact_kernel_sources)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS
+    "-O3;-fno-trapping-math;-fno-math-errno;-ffp-contract=off;-fno-tree-loop-distribute-patterns")
 endfunction()

@@ -17,6 +17,7 @@ struct ServerUnreachable : std::runtime_error {
 // Each adds one subcommand with its options and its work. The work throws: InputError (and
 // CLI11's own errors) end with kBadInput, ServerUnreachable with kServerUnreachable, any other
 // exception with kFailed.
+void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_demo(CLI::App& app);

@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
   app.require_subcommand(0, 1);  // so that an unknown one is named; none is refused below
   app.set_version_flag("--version", "holdfast 0.1.0");
+  add_bench(app);
   add_check(app);
   add_compare(app);
   add_demo(app);

@@ -5,10 +5,12 @@
 #include <optional>
 #include <utility>
 
+#include "core/denoiser/traffic.h"
 #include "core/history/dual_history.h"
 #include "core/history/shadow_history.h"
 #include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
+#include "core/spatial/filter_rows.h"
 #include "core/spatial/svgf_filter.h"
 
 namespace holdfast {
@@ -90,11 +92,17 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
   measure(input, tracer ? &*tracer : nullptr, scratch);
+  input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
 
-  if (follows_effect_ && input.surface != nullptr)
+  if (follows_effect_ && input.surface != nullptr) {
     trace_effect(input, tracer ? &*tracer : nullptr, scratch);
+    input.timer.end("vectors", vectors_traffic());
+  }
   blend(input, scratch);
+  const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
+  input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
   filter(input, scratch, out);
+  input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
   count_history(input.frames.now);
 }
 
@@ -126,13 +134,13 @@ void ComponentFilter::trace_effect(const ComponentInput& input, const ShadowTrac
 void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* tracer,
                               Scratch& s) const {
   const int width = input.frames.now.view.width, height = input.frames.now.view.height;
-  const Signal noisy{&s.noisy, channels_, {}, {}};
+  const int last = channels_ - 1;
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float l = noisy.luminance_at(x, y);
-      s.measured[kLuminance].at(x, y) = l;
-      s.measured[kSquare].at(x, y) = l * l;
-    }
+    luminance_row({{s.noisy[0].row(y), s.noisy[last / 2].row(y), s.noisy[last].row(y)},
+                   channels_,
+                   width,
+                   s.measured[kLuminance].row(y),
+                   s.measured[kSquare].row(y)});
   });
   if (tracer != nullptr)
     tracer->measure(s.measured, kField);
@@ -147,18 +155,23 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
   s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
   window_means(input.frames.now, measured, has_footprint_ ? kMeasured : kField, kStatisticsStep,
                s.window, s.means, 0, &s.measured_activity);
+  const bool visibility = channels_ == 1;
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float mean_square = square(s.means[kLuminance].at(x, y));
-      const float floor = channels_ == 1 ? kVisibilityVarianceFloor
-                                         : kRelativeVarianceFloor * mean_square + kVarianceFloor;
-      s.means[kSampleVariance].at(x, y) = std::max(s.means[kSquare].at(x, y) - mean_square, floor);
-      if (!has_footprint_) continue;
-      const float valid = s.means[kField + kFieldValid].at(x, y);
-      for (int c = 0; c < 3; ++c)
-        s.footprint[c].at(x, y) =
-            valid > 0.0f ? s.means[kField + kFieldPrecision + c].at(x, y) / valid : 0.0f;
+    StatisticsRow row{};
+    row.mean = s.means[kLuminance].row(y);
+    row.square = s.means[kSquare].row(y);
+    row.variance = s.means[kSquare].row(y);
+    row.floor_share = visibility ? 0.0f : kRelativeVarianceFloor;
+    row.floor_0 = visibility ? kVisibilityVarianceFloor : kVarianceFloor;
+    row.width = width;
+    if (has_footprint_) {
+      row.valid = s.means[kField + kFieldValid].row(y);
+      for (int c = 0; c < 3; ++c) {
+        row.precision[c] = s.means[kField + kFieldPrecision + c].row(y);
+        row.footprint[c] = s.footprint[c].row(y);
+      }
     }
+    statistics_row(row);
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/denoiser/plan.h"
+#include "core/denoiser/stage_timer.h"
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
 #include "core/history/glossy_history.h"
@@ -36,6 +37,7 @@ struct ComponentInput {
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
   BlockerPlanes blockers;
+  StageTimer& timer;         ///< told of each stage that ends
   GlossyPlanes reflections;  ///< of a glossy component that follows them
   FrameKey key;
   bool gradients = false;  ///< Scratch::gradients holds samples of the component

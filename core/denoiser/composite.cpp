@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/denoiser/frame_input.h"
 #include "core/kernels/parallel.h"
+#include "core/kernels/variants.h"
 
 namespace holdfast {
 namespace {
@@ -39,21 +40,50 @@ std::vector<Term> terms_of(std::span<const PlaneId> signals, const PlaneSet& inp
   return terms;
 }
 
-float usable_factor(float v) {
-  return std::isfinite(v) ? std::clamp(v, -kLargestRadiance, kLargestRadiance) : 0.0f;
+/// Adds one term to a row of the sum. Null factor or signal: 1.
+struct TermRow {
+  const float *factor, *signal, *depth;
+  bool on_sky;
+  int width;
+  float* out;
+};
+
+HOLDFAST_INLINE float usable_factor(float v) {
+  const float bounded = min_of(max_of(v, -kLargestRadiance), kLargestRadiance);
+  return abs_of(v) <= std::numeric_limits<float>::max() ? bounded : 0.0f;
 }
 
-/// Adds one term to a row of the sum.
-void add_term(const Term& term, int channel, int y, const float* depth, int width, float* out) {
-  const float* factor = term.factor ? term.factor->channel(channel).row(y) : nullptr;
-  const float* signal = nullptr;
-  if (term.signal) signal = term.signal->channel(term.signal->channels() == 1 ? 0 : channel).row(y);
-  for (int x = 0; x < width; ++x) {
-    if (!term.on_sky && !(depth[x] > 0.0f)) continue;
-    const float f = factor ? usable_factor(factor[x]) : 1.0f;
-    out[x] += signal ? f * signal[x] : f;
+HOLDFAST_INLINE void add_term_body(const TermRow& a) {
+  const float* __restrict factor = a.factor;
+  const float* __restrict signal = a.signal;
+  const float* __restrict depth = a.depth;
+  float* __restrict out = a.out;
+  if (a.on_sky && signal == nullptr) {
+    for (int x = 0; x < a.width; ++x) out[x] += usable_factor(factor[x]);
+  } else if (factor == nullptr) {
+    for (int x = 0; x < a.width; ++x) out[x] += depth[x] > 0.0f ? signal[x] : 0.0f;
+  } else {
+    for (int x = 0; x < a.width; ++x)
+      out[x] += depth[x] > 0.0f ? usable_factor(factor[x]) * signal[x] : 0.0f;
   }
 }
+
+struct NonFinite {
+  const float* in;
+  int width;
+  int* count;
+};
+
+HOLDFAST_INLINE void count_non_finite_body(const NonFinite& a) {
+  const float* __restrict in = a.in;
+  int count = 0;
+  for (int x = 0; x < a.width; ++x)
+    count += abs_of(in[x]) <= std::numeric_limits<float>::max() ? 0 : 1;
+  *a.count += count;
+}
+
+HOLDFAST_KERNEL(add_term, TermRow)
+HOLDFAST_KERNEL(count_non_finite, NonFinite)
 
 }  // namespace
 
@@ -64,14 +94,17 @@ std::uint64_t compose(const Guides& guides, std::span<const PlaneId> signals, co
   const std::vector<Term> terms = terms_of(signals, input, shaded, results);
   std::atomic<std::uint64_t> non_finite{0};
   for_each_row(guides.view.height, [&](int y) {
-    std::uint64_t bad = 0;
+    int bad = 0;
     for (int c = 0; c < 3; ++c) {
       float* row = out.channel(c).row(y);
       std::fill_n(row, width, 0.0f);
-      for (const Term& term : terms) add_term(term, c, y, guides.depth().row(y), width, row);
-      for (int x = 0; x < width; ++x) bad += std::isfinite(row[x]) ? 0 : 1;
+      for (const Term& t : terms)
+        add_term({t.factor ? t.factor->channel(c).row(y) : nullptr,
+                  t.signal ? t.signal->channel(t.signal->channels() == 1 ? 0 : c).row(y) : nullptr,
+                  guides.depth().row(y), t.on_sky, width, row});
+      count_non_finite({row, width, &bad});
     }
-    if (bad > 0) non_finite += bad;
+    if (bad > 0) non_finite += static_cast<std::uint64_t>(bad);
   });
   return non_finite;
 }

@@ -9,6 +9,7 @@
 #include "core/denoiser/frame_input.h"
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
+#include "core/denoiser/stage_timer.h"
 #include "core/frame/error.h"
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
@@ -16,24 +17,6 @@
 
 namespace holdfast {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Times the stages of a frame: each call names the stage that has just ended.
-class StageTimer {
- public:
-  explicit StageTimer(std::vector<StageTime>& out) : out_(out), last_(Clock::now()) {}
-  void end(std::string stage) {
-    const auto now = Clock::now();
-    out_.push_back(
-        {std::move(stage), std::chrono::duration<double, std::milli>(now - last_).count()});
-    last_ = now;
-  }
-
- private:
-  std::vector<StageTime>& out_;
-  Clock::time_point last_;
-};
 
 /// The planes of `frame` must be exactly those of the session, each of its size.
 void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
@@ -74,6 +57,7 @@ class Denoiser::Impl {
   }
 
   FrameReport filter(const Frame& frame, PlaneSet& results) {
+    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     if (frame.index <= last_index)
       throw InputError("frame index", "must be greater than " + std::to_string(last_index),
@@ -88,23 +72,24 @@ class Denoiser::Impl {
     report.history_reset = !has_past;
     now = 1 - now;
     load_guides(frame, report);
-    timer.end("guides");
+    timer.end("guides", 10);
     const FramePair frames{guides[now], guides[1 - now], scene};
     if (has_past) {
       trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
-      timer.end("surface");
+      timer.end("surface", 17);
     }
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
     for (std::size_t k = 0; k < filters.size(); ++k) {
-      run_component(frame, frames, plan.components[k], filters[k], results, report);
-      timer.end(component_name(filters[k].component()));
+      timer.enter(component_name(filters[k].component()));
+      run_component(frame, frames, plan.components[k], filters[k], results, report, timer);
     }
+    timer.enter("");
     if (!plan.shaded_lights.empty()) {
       shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
-      timer.end("unshadowed");
+      timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
     }
     report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
-    timer.end("composite");
+    timer.end("composite", composite_channels(frame.planes));
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return report;
@@ -125,10 +110,12 @@ class Denoiser::Impl {
   }
 
   void run_component(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
-                     ComponentFilter& component_filter, PlaneSet& results, FrameReport& report) {
+                     ComponentFilter& component_filter, PlaneSet& results, FrameReport& report,
+                     StageTimer& timer) {
     const PlaneId id = component_plane(entry.component);
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
-    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, {}, {}};
+    timer.end("input", 2 * scratch.noisy.count());
+    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, timer, {}, {}};
     input.key = {config.seed, frame.index};
     input.gradients = entry.gradients;
     if (entry.gradients) {
@@ -153,6 +140,13 @@ class Denoiser::Impl {
     report.mean_history_frames +=
         component_filter.mean_history_frames() / static_cast<double>(filters.size());
     if (config.debug_planes) write_debug(entry.component, results);
+  }
+
+  /// Images that `compose` reads and writes: depth, its terms and the sum.
+  int composite_channels(const PlaneSet& planes) const {
+    int count = 1 + 3;
+    for (const PlaneId id : signals) count += 3 + channel_count(id.kind);
+    return count + (planes.find({PlaneKind::kEmission, {}}) ? 3 : 0);
   }
 
   void write_debug(Component component, PlaneSet& results) {

@@ -24,8 +24,9 @@ struct DenoiserConfig {
 
 /// One timed stage of a frame.
 struct StageTime {
-  std::string stage;
-  double ms = 0;
+  std::string stage;           ///< "guides", or with its component: "light0.visibility.blend"
+  double ms = 0;               ///< wall time
+  double bytes_per_pixel = 0;  ///< that its passes read and write, each plane once a pass
 };
 
 /// Values that were not finite or out of range and were repaired on the way in.

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
-#include "core/frame/conventions.h"
 #include "core/kernels/parallel.h"
+#include "core/kernels/variants.h"
 
 namespace holdfast {
 namespace {
@@ -20,41 +21,85 @@ std::uint64_t count_rows(int height, const Body& body) {
   return total;
 }
 
+constexpr float kMost = std::numeric_limits<float>::max();
+
+/// One row of depths or of normals; `repaired` grows by the number of repaired values.
+struct DepthRow {
+  const float* in;
+  int width;
+  float* out;
+  int* repaired;
+};
+struct NormalRow {
+  const float *depth, *in[3];
+  float towards_camera[3];
+  int width;
+  float* out[3];
+  int* repaired;
+};
+
+HOLDFAST_INLINE void depth_row_body(const DepthRow& a) {
+  const float* __restrict in = a.in;
+  float* __restrict out = a.out;
+  int repaired = 0;
+  for (int x = 0; x < a.width; ++x) {
+    repaired += in[x] != in[x] ? 1 : 0;
+    out[x] = in[x] > 0.0f && in[x] <= kMost ? in[x] : 0.0f;
+  }
+  *a.repaired += repaired;
+}
+
+HOLDFAST_INLINE void normal_row_body(const NormalRow& a) {
+  const float* __restrict depth = a.depth;
+  const float* __restrict nx = a.in[0];
+  const float* __restrict ny = a.in[1];
+  const float* __restrict nz = a.in[2];
+  float* __restrict out_x = a.out[0];
+  float* __restrict out_y = a.out[1];
+  float* __restrict out_z = a.out[2];
+  const float tx = a.towards_camera[0], ty = a.towards_camera[1], tz = a.towards_camera[2];
+  int repaired = 0;
+  for (int x = 0; x < a.width; ++x) {
+    const float length = __builtin_sqrtf(nx[x] * nx[x] + ny[x] * ny[x] + nz[x] * nz[x]);
+    const bool surface = depth[x] > 0.0f, usable = length > 0.0f && length <= kMost;
+    const float scale = 1.0f / (usable ? length : 1.0f);
+    repaired += surface && !usable ? 1 : 0;
+    const float ux = usable ? nx[x] * scale : tx;
+    const float uy = usable ? ny[x] * scale : ty;
+    const float uz = usable ? nz[x] * scale : tz;
+    out_x[x] = surface ? ux : 0.0f;
+    out_y[x] = surface ? uy : 0.0f;
+    out_z[x] = surface ? uz : 0.0f;
+  }
+  *a.repaired += repaired;
+}
+
+HOLDFAST_KERNEL(depth_row, DepthRow)
+HOLDFAST_KERNEL(normal_row, NormalRow)
+
 }  // namespace
 
 std::uint64_t load_depth(const Plane& depth, Guides& out) {
   const auto in = depth.channel(0);
   return count_rows(in.height, [&](int y) {
-    std::uint64_t repaired = 0;
-    for (int x = 0; x < in.width; ++x) {
-      const float d = in.at(x, y);
-      repaired += std::isnan(d) ? 1 : 0;
-      out.depth_normal[0].at(x, y) = is_surface(d) ? d : 0.0f;
-    }
-    return repaired;
+    int repaired = 0;
+    depth_row({in.row(y), in.width, out.depth_normal[0].row(y), &repaired});
+    return static_cast<std::uint64_t>(repaired);
   });
 }
 
 std::uint64_t load_normals(const Plane& normal, Guides& out) {
-  const auto nx = normal.channel(0), ny = normal.channel(1), nz = normal.channel(2);
-  const glm::vec3 towards_camera = -glm::normalize(out.rays.forward);
-  return count_rows(nx.height, [&](int y) {
-    std::uint64_t repaired = 0;
-    for (int x = 0; x < nx.width; ++x) {
-      glm::vec3 n(0.0f);
-      if (out.depth().at(x, y) > 0.0f) {
-        n = {nx.at(x, y), ny.at(x, y), nz.at(x, y)};
-        const float length = glm::length(n);
-        if (length > 0.0f && std::isfinite(length)) {
-          n /= length;
-        } else {
-          n = towards_camera;
-          ++repaired;
-        }
-      }
-      for (int axis = 0; axis < 3; ++axis) out.depth_normal[1 + axis].at(x, y) = n[axis];
+  const glm::vec3 towards = -glm::normalize(out.rays.forward);
+  return count_rows(normal.height(), [&](int y) {
+    int repaired = 0;
+    NormalRow row{out.depth().row(y), {}, {towards.x, towards.y, towards.z},
+                  normal.width(),     {}, &repaired};
+    for (int axis = 0; axis < 3; ++axis) {
+      row.in[axis] = normal.channel(axis).row(y);
+      row.out[axis] = out.depth_normal[1 + axis].row(y);
     }
-    return repaired;
+    normal_row(row);
+    return static_cast<std::uint64_t>(repaired);
   });
 }
 

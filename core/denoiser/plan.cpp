@@ -135,7 +135,8 @@ const char* blending_of(const Recipe& recipe) {
   if (recipe.blending == Blending::kExpectedError) return "blended by expected error";
   switch (recipe.accumulation.rectification) {
     case Rectification::kNone: return "exponential mean";
-    case Rectification::kClamp: return "exponential mean, clamped";
+    case Rectification::kClamp:
+    case Rectification::kClampBox: return "exponential mean, clamped";
     case Rectification::kClampFallback: return "exponential mean, clamped where vectors fail";
   }
   return "";

@@ -1,8 +1,8 @@
 #include "core/history/shadow_history.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "core/history/surface_history.h"
 #include "core/kernels/parallel.h"
 #include "core/motion/shadow_motion.h"
 
@@ -31,6 +31,56 @@ float falloff_at(const Guides& previous, const Receiver& receiver, float px, flo
                            footprint);
 }
 
+/// A block of a row on its way to the previous frame.
+struct Lanes {
+  float ratio[kFollowBlock];
+  std::uint8_t own[kFollowBlock];                     ///< follows its own blocked sample
+  std::uint8_t wanted[kFollowBlock];                  ///< not followed yet
+  int surface[kFollowBlock], occluder[kFollowBlock];  ///< slots
+};
+
+/// Chooses what the pixels from (x, y) on follow; false if none has a shadow to follow.
+bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule, int x, int y,
+            int count, const float* valid, const float* ratio, const float* own_ratio,
+            Lanes& lanes) {
+  const float* depth = frames.now.depth().row(y) + x;
+  const std::uint32_t* id = frames.now.id[0].row(y) + x;
+  bool any = false;
+  for (int i = 0; i < count; ++i) {
+    lanes.wanted[i] = depth[i] > 0.0f && valid[i] > kLeastValid;
+    any |= lanes.wanted[i] != 0;
+  }
+  if (!any) return false;
+  for (int i = 0; i < count; ++i) {
+    const bool own = rule == ShadowRule::kPaper && own_ratio[i] > 0.0f;
+    lanes.own[i] = own;
+    lanes.ratio[i] = own ? own_ratio[i] : ratio[i] / (lanes.wanted[i] ? valid[i] : 1.0f);
+    if (!lanes.wanted[i]) continue;
+    lanes.surface[i] = frames.scene.slot_of(id[i]);
+    lanes.occluder[i] =
+        own ? tracer.own_blocker_slot(x + i, y) : tracer.nearest_blocker_slot(x + i, y);
+  }
+  return true;
+}
+
+/// Writes the history of pixel (x, y), whose shadow was at lane i of `found`.
+void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int i, int x, int y,
+          EffectHistory& out) {
+  if (found.found[i] == 0.0f) return;
+  const Receiver receiver{{found.point[0][i], found.point[1][i], found.point[2][i]},
+                          {found.normal[0][i], found.normal[1][i], found.normal[2][i]},
+                          frames.now.id[0].at(x, y)};
+  const bool paper = rule == ShadowRule::kPaper;
+  const Taps taps = paper ? find_taps_on_any_surface(frames.previous, found.x[i], found.y[i])
+                          : find_taps(frames.previous, found.x[i], found.y[i], receiver);
+  out.taps[0].at(x, y) = taps;
+  out.motion[0].at(x, y) = found.x[i] - (static_cast<float>(x) + 0.5f);
+  out.motion[1].at(x, y) = found.y[i] - (static_cast<float>(y) + 0.5f);
+  if (taps.any())
+    out.motion[2].at(x, y) =
+        paper ? falloff_at(frames.previous, receiver, found.x[i], found.y[i]) : 1.0f;
+}
+
 }  // namespace
 
 void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule,
@@ -38,29 +88,28 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
                           ChannelView<const float> own_ratio, EffectHistory& out) {
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
-    for (int x = 0; x < now.view.width; ++x) {
-      Taps taps;
-      float motion_x = 0, motion_y = 0, trust = 0;
-      const float borrowed = valid.at(x, y), own = own_ratio.at(x, y);
-      if (now.depth().at(x, y) > 0.0f && borrowed > kLeastValid) {
-        const bool use_own = rule == ShadowRule::kPaper && own > 0.0f;
-        const auto pixel = use_own ? tracer.follow_own(x, y, own)
-                                   : tracer.follow_borrowed(x, y, ratio.at(x, y) / borrowed);
-        if (pixel.in_front) {
-          const int slot = frames.scene.slot_of(now.id[0].at(x, y));
-          const Receiver receiver = previous_receiver(now, frames.scene.object(slot), x, y);
-          taps = rule == ShadowRule::kPaper
-                     ? find_taps_on_any_surface(frames.previous, pixel.x, pixel.y)
-                     : find_taps(frames.previous, pixel.x, pixel.y, receiver);
-          motion_x = pixel.x - (static_cast<float>(x) + 0.5f);
-          motion_y = pixel.y - (static_cast<float>(y) + 0.5f);
-          trust = !taps.any() ? 0.0f
-                  : rule == ShadowRule::kPaper
-                      ? falloff_at(frames.previous, receiver, pixel.x, pixel.y)
-                      : 1.0f;
+    Lanes lanes;
+    FollowedBlock found;
+    for (int x = 0; x < now.view.width; x += kFollowBlock) {
+      const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
+      std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
+      for (int c = 0; c < 3; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
+      if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
+                  own_ratio.row(y) + x, lanes))
+        continue;
+      for (int i = 0; i < pixels.count; ++i) {
+        if (!lanes.wanted[i]) continue;
+        const int surface = lanes.surface[i], occluder = lanes.occluder[i];
+        tracer.follow_block(pixels, x, y, lanes.ratio,
+                            rule == ShadowRule::kPaper ? lanes.own : nullptr, surface, occluder,
+                            found);
+        for (int k = i; k < pixels.count; ++k) {
+          if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
+            continue;
+          lanes.wanted[k] = 0;
+          take(frames, rule, found, k, x + k, y, out);
         }
       }
-      out.set(x, y, taps, motion_x, motion_y, trust);
     }
   });
 }

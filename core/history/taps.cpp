@@ -120,6 +120,18 @@ bool same_surface(const Guides& now, const Guides& previous, int x, int y) {
   return same;
 }
 
+void same_surface_block(const Guides& now, const Guides& previous, int x, int y, int count,
+                        std::uint8_t* same) {
+  const std::uint32_t* id = now.id[0].row(y) + x;
+  const std::uint32_t* id_before = previous.id[0].row(y) + x;
+  for (int i = 0; i < count; ++i) same[i] = id[i] == id_before[i] ? 1 : 0;
+  for (int c = 0; c < now.depth_normal.count(); ++c) {
+    const float* a = now.depth_normal[c].row(y) + x;
+    const float* b = previous.depth_normal[c].row(y) + x;
+    for (int i = 0; i < count; ++i) same[i] &= static_cast<std::uint8_t>(a[i] == b[i] ? 1 : 0);
+  }
+}
+
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y) {
   return bilinear_taps(previous, x, y, [&](int tx, int ty) {
     return tx >= 0 && ty >= 0 && tx < previous.view.width && ty < previous.view.height &&

@@ -39,6 +39,10 @@ Taps find_similar_taps(const Guides& previous, float x, float y, const Receiver&
 /// True where both frames show exactly the same surface at pixel (x, y).
 bool same_surface(const Guides& now, const Guides& previous, int x, int y);
 
+/// The same for `count` pixels from (x, y) on: same[i] = 1 or 0.
+void same_surface_block(const Guides& now, const Guides& previous, int x, int y, int count,
+                        std::uint8_t* same);
+
 /// As find_taps, where any surface inside the image is valid.
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y);
 

@@ -10,7 +10,8 @@
 namespace holdfast {
 namespace {
 
-constexpr std::array<std::string_view, 4> kNames{"portable", "x86-64-v2", "x86-64-v3", "x86-64-v4"};
+constexpr std::array<std::string_view, 5> kNames{"scalar", "portable", "x86-64-v2", "x86-64-v3",
+                                                 "x86-64-v4"};
 
 Isa from_environment() {
   const std::vector<Isa> available = available_isas();
@@ -34,7 +35,7 @@ std::atomic<Isa>& selection() {
 std::string_view isa_name(Isa isa) { return kNames[static_cast<std::size_t>(isa)]; }
 
 std::vector<Isa> available_isas() {
-  std::vector<Isa> isas{Isa::kPortable};
+  std::vector<Isa> isas{Isa::kScalar, Isa::kPortable};
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (__builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt"))

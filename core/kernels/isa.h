@@ -5,10 +5,11 @@
 
 namespace holdfast {
 
-/// Instruction sets that the kernels are compiled for. Each runs the same source.
-enum class Isa { kPortable, kX86_64V2, kX86_64V3, kX86_64V4 };
+/// Instruction sets that the kernels are compiled for. Each runs the same source. kScalar is the
+/// portable one without vectors: what the others are measured against.
+enum class Isa { kScalar, kPortable, kX86_64V2, kX86_64V3, kX86_64V4 };
 
-/// "portable", "x86-64-v2", "x86-64-v3", "x86-64-v4".
+/// "scalar", "portable", "x86-64-v2", "x86-64-v3", "x86-64-v4".
 std::string_view isa_name(Isa isa);
 
 /// The instruction sets that this machine can run, plainest first.

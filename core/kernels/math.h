@@ -18,17 +18,19 @@ HOLDFAST_INLINE T exp_nonpositive(T x) noexcept {
   if constexpr (std::is_same_v<T, float>) {
     constexpr float kLog2E = 1.44269504f;
     constexpr float kSmallest = 1.17549435e-38f;  // 2^-126
+    constexpr float kRound = 12582912.0f;         // 1.5 2^23: adding it rounds to an integer
     const float t = x * kLog2E > -126.0f ? x * kLog2E : -126.0f;
-    const int i = static_cast<int>(t - 0.5f);
-    const float f = t - static_cast<float>(i);
+    const float rounded = t + kRound;  // i sits in its low bits
+    const float f = t - (rounded - kRound);
     float p = 1.3333558e-3f;  // Taylor coefficients ln(2)^k / k!
     p = p * f + 9.6181291e-3f;
     p = p * f + 5.5504109e-2f;
     p = p * f + 2.4022651e-1f;
     p = p * f + 6.9314718e-1f;
     p = p * f + 1.0f;
-    const float scale = std::bit_cast<float>((i + 127) << 23);
-    return p * scale - kSmallest;  // exactly 0 where t was clamped
+    const std::uint32_t exponent = std::bit_cast<std::uint32_t>(rounded) << 23;
+    const float scaled = std::bit_cast<float>(std::bit_cast<std::uint32_t>(p) + exponent);
+    return scaled - kSmallest;  // exactly 0 where t was clamped
   } else {
     return std::exp(x);
   }

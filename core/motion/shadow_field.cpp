@@ -1,9 +1,12 @@
 #include "core/motion/shadow_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/kernels/parallel.h"
+#include "core/motion/shadow_cast.h"
 #include "core/motion/shadow_motion.h"
 
 namespace holdfast {
@@ -15,6 +18,26 @@ constexpr float kCastVariance = 0.5f / 3.0f;  // times half axis^2; a uniform sh
 constexpr float kPixelVariance = 0.5f;        // px^2
 
 constexpr int kBlockerSearchRadius = 3;  // px; the window of the local means
+constexpr int kBlockerSearchSteps = (2 * kBlockerSearchRadius + 1) * (2 * kBlockerSearchRadius + 1);
+
+struct SearchStep {
+  int x, y;
+};
+
+/// The offsets of the search window, nearest first, rows before columns among equals.
+const std::array<SearchStep, kBlockerSearchSteps>& search_order() {
+  static const auto order = [] {
+    std::array<SearchStep, kBlockerSearchSteps> steps{};
+    std::size_t k = 0;
+    for (int y = -kBlockerSearchRadius; y <= kBlockerSearchRadius; ++y)
+      for (int x = -kBlockerSearchRadius; x <= kBlockerSearchRadius; ++x) steps[k++] = {x, y};
+    std::stable_sort(steps.begin(), steps.end(), [](const SearchStep& a, const SearchStep& b) {
+      return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
+    });
+    return steps;
+  }();
+  return order;
+}
 
 }  // namespace
 
@@ -41,52 +64,96 @@ bool ShadowTracer::blocked(int x, int y) const {
 }
 
 void ShadowTracer::measure(Channels<float>& out, int first) const {
+  const int axes = half_axes_[2] == glm::vec3(0) ? 2 : 3;
   for_each_row(now_.view.height, [&](int y) {
-    for (int x = 0; x < now_.view.width; ++x) {
-      float field[kEffectFieldChannels] = {};
-      if (blocked(x, y)) {
-        const glm::vec4 light =
-            relative_from_light_ * light_point(light_, u_.at(x, y), v_.at(x, y));
-        const glm::vec3 point = now_.position_at(x, y), normal = now_.normal_at(x, y);
-        const glm::vec3 to_light = glm::vec3(light) - light.w * point;
-        const float light_m = glm::length(to_light);
-        if (glm::dot(to_light, normal) > 1e-4f * light_m) {
-          const float ratio = distance_.at(x, y) / light_m;
-          const float beyond = std::max(1.0f - light.w * ratio, 1e-3f);  // blocker to light
-          const glm::vec3 precision =
-              penumbra_precision(point, normal, -beyond * to_light, ratio / beyond);
-          field[kFieldValid] = 1.0f;
-          field[kFieldRatio] = ratio;
-          for (int k = 0; k < 3; ++k) field[kFieldPrecision + k] = precision[k];
-        }
-      }
-      for (int c = 0; c < kEffectFieldChannels; ++c) out[first + c].at(x, y) = field[c];
+    float light[3][kFollowBlock];
+    for (int x = 0; x < now_.view.width; x += kFollowBlock) {
+      const BlockPixels pixels(now_, x, y, std::min(kFollowBlock, now_.view.width - x));
+      const float light_w = sample_lights(x, y, pixels.count, light);
+      const auto to = [&](int channel) { return out[first + channel].row(y) + x; };
+      cast_shadows({pixels,
+                    distance_.row(y) + x,
+                    {light[0], light[1], light[2]},
+                    light_w,
+                    half_axes_,
+                    axes,
+                    pixel_,
+                    static_cast<float>(y) + 0.5f,
+                    kCastVariance,
+                    kPixelVariance,
+                    to(kFieldValid),
+                    to(kFieldRatio),
+                    {to(kFieldPrecision), to(kFieldPrecision + 1), to(kFieldPrecision + 2)}});
     }
   });
 }
 
-/// A light's half axis A moves the shadow point by tau (-A + (A.n) t / (t.n)), where t = blocker -
-/// light and tau = receiver distance / |t|, both along the ray.
-glm::vec3 ShadowTracer::penumbra_precision(const glm::vec3& point, const glm::vec3& normal,
-                                           const glm::vec3& towards, float tau) const {
-  const auto origin = project(pixel_, point);
-  const glm::vec3 slide = towards / glm::dot(towards, normal);
-  float xx = kPixelVariance, xy = 0, yy = kPixelVariance;
-  for (int k = 0; k < 3; ++k) {
-    const glm::vec3 shift = tau * (glm::dot(half_axes_[k], normal) * slide - half_axes_[k]);
-    const auto moved = project(pixel_, point + shift);
-    if (!moved.in_front) continue;
-    const float dx = moved.x - origin.x, dy = moved.y - origin.y;
-    xx += kCastVariance * dx * dx;
-    xy += kCastVariance * dx * dy;
-    yy += kCastVariance * dy * dy;
+/// Light samples of `count` pixels from (x, y) on, relative to the camera; returns their w. Samples
+/// that are not blocked may be left out, as is a block without blocker.
+float ShadowTracer::sample_lights(int x, int y, int count, float (*light)[kFollowBlock]) const {
+  const float *u = u_.row(y) + x, *v = v_.row(y) + x, *distance = distance_.row(y) + x;
+  const bool any = std::any_of(distance, distance + count,
+                               [](float d) { return d <= std::numeric_limits<float>::max(); });
+  if (!any) return 1.0f;
+  if (light_.shape == LightShape::kRectangle) {  // affine in the sample
+    const glm::vec4 start = relative_from_light_ * light_point(light_, 0.0f, 0.0f);
+    const glm::vec4 along_u = relative_from_light_[0] * static_cast<float>(light_.width);
+    const glm::vec4 along_v = relative_from_light_[1] * static_cast<float>(light_.height);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < count; ++i)
+        light[axis][i] = start[axis] + u[i] * along_u[axis] + v[i] * along_v[axis];
+    return 1.0f;
   }
-  return precision_of_covariance(xx, xy, yy);
+  for (int i = 0; i < count; ++i) {
+    const bool near = distance[i] <= std::numeric_limits<float>::max();
+    const glm::vec4 point =
+        near ? relative_from_light_ * light_point(light_, u[i], v[i]) : glm::vec4(0);
+    for (int axis = 0; axis < 3; ++axis) light[axis][i] = point[axis];
+  }
+  return light_.shape == LightShape::kDirectional ? 0.0f : 1.0f;
+}
+
+void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const float* ratio,
+                                const std::uint8_t* own, int surface_slot, int occluder_slot,
+                                FollowedBlock& out) const {
+  const ObjectMotion<float>& surface = scene_.object(surface_slot);
+  const ObjectMotion<float>& occluder = scene_.object(occluder_slot);
+  if (!surface.traceable || !occluder.traceable) {
+    std::fill_n(out.found, pixels.count, 0.0f);
+    return;
+  }
+  float light[3][kFollowBlock], previous[3][kFollowBlock];
+  const glm::vec4 centre = light_point(light_, 0.5f, 0.5f);
+  glm::vec4 now = relative_from_light_ * centre, before = previous_relative_from_light_ * centre;
+  const glm::vec4 centre_now = now, centre_before = before;
+  for (int i = 0; i < pixels.count; ++i) {
+    if (own != nullptr) {
+      const glm::vec4 local = light_point(light_, u_.at(x + i, y), v_.at(x + i, y));
+      now = own[i] ? relative_from_light_ * local : centre_now;
+      before = own[i] ? previous_relative_from_light_ * local : centre_before;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      light[axis][i] = now[axis];
+      previous[axis][i] = before[axis];
+    }
+  }
+  holdfast::follow_shadow({pixels,
+                           surface,
+                           occluder,
+                           previous_pixel_,
+                           ratio,
+                           {light[0], light[1], light[2]},
+                           {previous[0], previous[1], previous[2]},
+                           centre.w,
+                           out});
+}
+
+int ShadowTracer::own_blocker_slot(int x, int y) const {
+  return id_ != nullptr ? scene_.slot_of(id_->ids().at(x, y)) : 0;
 }
 
 PixelPoint<float> ShadowTracer::follow_own(int x, int y, float ratio) const {
-  const int slot = id_ != nullptr ? scene_.slot_of(id_->ids().at(x, y)) : 0;
-  return follow(x, y, ratio, u_.at(x, y), v_.at(x, y), slot);
+  return follow(x, y, ratio, u_.at(x, y), v_.at(x, y), own_blocker_slot(x, y));
 }
 
 PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const {
@@ -95,17 +162,13 @@ PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const
 
 int ShadowTracer::nearest_blocker_slot(int x, int y) const {
   if (id_ == nullptr || scene_.slot_count() == 1) return 0;
-  int slot = 0, best = 1 << 20;
-  for (int j = -kBlockerSearchRadius; j <= kBlockerSearchRadius; ++j)
-    for (int i = -kBlockerSearchRadius; i <= kBlockerSearchRadius; ++i) {
-      const int qx = x + i, qy = y + j, distance = i * i + j * j;
-      if (distance >= best || qx < 0 || qy < 0 || qx >= now_.view.width || qy >= now_.view.height ||
-          !blocked(qx, qy))
-        continue;
-      best = distance;
-      slot = scene_.slot_of(id_->ids().at(qx, qy));
-    }
-  return slot;
+  for (const SearchStep& step : search_order()) {
+    const int qx = x + step.x, qy = y + step.y;
+    if (qx < 0 || qy < 0 || qx >= now_.view.width || qy >= now_.view.height || !blocked(qx, qy))
+      continue;
+    return own_blocker_slot(qx, qy);
+  }
+  return 0;
 }
 
 PixelPoint<float> ShadowTracer::follow(int x, int y, float ratio, float u, float v,

@@ -3,6 +3,7 @@
 #include "core/frame/guides.h"
 #include "core/frame/scene_motion.h"
 #include "core/motion/effect_field.h"
+#include "core/motion/follow_block.h"
 
 namespace holdfast {
 
@@ -34,12 +35,22 @@ class ShadowTracer {
   /// nearest blocked sample.
   PixelPoint<float> follow_borrowed(int x, int y, float ratio) const;
 
+  /// The same for a block of pixels from (x, y) on that all lie on the object of `surface_slot` and
+  /// are all shadowed by that of `occluder_slot`; pixels of which this is not so, or without
+  /// surface or blocker, get unspecified results. Pixel i takes its own blocked sample where own[i]
+  /// is not 0, and borrows one elsewhere and where `own` is null.
+  void follow_block(const BlockPixels& pixels, int x, int y, const float* ratio,
+                    const std::uint8_t* own, int surface_slot, int occluder_slot,
+                    FollowedBlock& out) const;
+
+  /// The object that blocks the sample of (x, y), and the object of the nearest blocked sample.
+  int own_blocker_slot(int x, int y) const;
+  int nearest_blocker_slot(int x, int y) const;
+
  private:
   PixelPoint<float> follow(int x, int y, float ratio, float u, float v, int occluder_slot) const;
   bool blocked(int x, int y) const;
-  int nearest_blocker_slot(int x, int y) const;
-  glm::vec3 penumbra_precision(const glm::vec3& point, const glm::vec3& normal,
-                               const glm::vec3& towards, float tau) const;
+  float sample_lights(int x, int y, int count, float (*light)[kFollowBlock]) const;
 
   const Guides& now_;
   const SceneMotion& scene_;

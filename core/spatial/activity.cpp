@@ -4,66 +4,118 @@
 #include <limits>
 
 #include "core/kernels/parallel.h"
+#include "core/kernels/variants.h"
 
 namespace holdfast {
 namespace {
+
 constexpr int tiles(int pixels, int size) { return (pixels + size - 1) / size; }
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// One row of tiles: smallest and largest value of a signal on the surfaces of each.
+struct TileRanges {
+  ChannelView<const float> depth, signal;
+  int first_y, last_y;
+  float low, high;  ///< to begin with
+  float *low_out, *high_out;
+};
+
+HOLDFAST_INLINE void widen(const TileRanges& a, int x0, int count, float* __restrict low,
+                           float* __restrict high) {
+  for (int y = a.first_y; y < a.last_y; ++y) {
+    const float* __restrict depth = a.depth.row(y) + x0;
+    const float* __restrict value = a.signal.row(y) + x0;
+    for (int i = 0; i < count; ++i) {
+      const float least = depth[i] > 0.0f ? value[i] : low[i];
+      const float most = depth[i] > 0.0f ? value[i] : high[i];
+      low[i] = min_of(least, low[i]);
+      high[i] = max_of(most, high[i]);
+    }
+  }
+}
+
+HOLDFAST_INLINE void tile_ranges_body(const TileRanges& a) {
+  constexpr int kTile = ActivityMap::kTileWidth;
+  const int width = a.signal.width;
+  for (int x0 = 0, column = 0; x0 < width; x0 += kTile, ++column) {
+    float low[kTile], high[kTile];
+    for (int i = 0; i < kTile; ++i) low[i] = a.low;
+    for (int i = 0; i < kTile; ++i) high[i] = a.high;
+    if (x0 + kTile <= width)
+      widen(a, x0, kTile, low, high);
+    else
+      widen(a, x0, width - x0, low, high);
+    for (int half = kTile / 2; half > 0; half /= 2)
+      for (int i = 0; i < half; ++i) {
+        low[i] = min_of(low[i], low[i + half]);
+        high[i] = max_of(high[i], high[i + half]);
+      }
+    a.low_out[column] = low[0];
+    a.high_out[column] = high[0];
+  }
+}
+
+HOLDFAST_KERNEL(tile_ranges, TileRanges)
+
 }  // namespace
 
 ActivityMap::ActivityMap(int width, int height)
     : columns_(tiles(width, kTileWidth)), rows_(tiles(height, kTileHeight)) {
   const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  active_.assign(count, 1);
-  low_.resize(count);
-  high_.resize(count);
+  zone_.assign(count, 0);
+  for (std::vector<float>* v : {&low_, &high_, &row_low_, &row_high_}) v->resize(count);
 }
 
 void ActivityMap::measure(const Guides& guides, std::span<const ChannelView<const float>> signals,
-                          int halo, float tolerance, bool around_zero) {
-  const int reach_x = tiles(halo, kTileWidth), reach_y = tiles(halo, kTileHeight);
-  std::fill(active_.begin(), active_.end(), std::uint8_t{0});
-  const auto tile_rows = [&](const auto& body) {
-    tbb::parallel_for(0, rows_, [&](int row) { body(row); });
-  };
+                          std::span<const int> halos, float tolerance, bool around_zero) {
+  std::fill(zone_.begin(), zone_.end(), kRest);
   for (const ChannelView<const float>& signal : signals) {
-    tile_rows([&](int row) {
-      for (int column = 0; column < columns_; ++column) {
-        float low = around_zero ? 0.0f : kInfinity, high = around_zero ? 0.0f : -kInfinity;
-        const int last_x = std::min((column + 1) * kTileWidth, signal.width);
-        const int last_y = std::min((row + 1) * kTileHeight, signal.height);
-        for (int y = row * kTileHeight; y < last_y; ++y) {
-          const float* depth = guides.depth().row(y);
-          const float* value = signal.row(y);
-          for (int x = column * kTileWidth; x < last_x; ++x) {
-            if (!(depth[x] > 0.0f)) continue;
-            low = std::min(low, value[x]);
-            high = std::max(high, value[x]);
-          }
-        }
-        low_[static_cast<std::size_t>(row * columns_ + column)] = low;
-        high_[static_cast<std::size_t>(row * columns_ + column)] = high;
-      }
-    });
-    tile_rows([&](int row) {
-      for (int column = 0; column < columns_; ++column) {
-        float low = kInfinity, high = -kInfinity;
-        for (int r = std::max(row - reach_y, 0); r <= std::min(row + reach_y, rows_ - 1); ++r)
-          for (int c = std::max(column - reach_x, 0); c <= std::min(column + reach_x, columns_ - 1);
-               ++c) {
-            low = std::min(low, low_[static_cast<std::size_t>(r * columns_ + c)]);
-            high = std::max(high, high_[static_cast<std::size_t>(r * columns_ + c)]);
-          }
-        if (high - low > tolerance) active_[static_cast<std::size_t>(row * columns_ + column)] = 1;
-      }
-    });
+    measure_ranges(guides, signal, around_zero);
+    for (std::size_t zone = 0; zone < halos.size(); ++zone)
+      mark(halos[zone], static_cast<int>(zone), tolerance);
   }
 }
 
-double ActivityMap::active_share() const {
-  if (active_.empty()) return 0;
-  return static_cast<double>(std::count(active_.begin(), active_.end(), std::uint8_t{1})) /
-         static_cast<double>(active_.size());
+void ActivityMap::measure_ranges(const Guides& guides, ChannelView<const float> signal,
+                                 bool around_zero) {
+  tbb::parallel_for(0, rows_, [&](int row) {
+    tile_ranges({guides.depth(), signal, row * kTileHeight,
+                 std::min((row + 1) * kTileHeight, signal.height), around_zero ? 0.0f : kInfinity,
+                 around_zero ? 0.0f : -kInfinity, &low_[at(row, 0)], &high_[at(row, 0)]});
+  });
+}
+
+void ActivityMap::mark(int halo, int zone, float tolerance) {
+  const int reach_x = tiles(halo, kTileWidth), reach_y = tiles(halo, kTileHeight);
+  tbb::parallel_for(0, rows_, [&](int row) {
+    for (int column = 0; column < columns_; ++column) {
+      const int first = std::max(column - reach_x, 0);
+      const int last = std::min(column + reach_x, columns_ - 1);
+      row_low_[at(row, column)] =
+          *std::min_element(&low_[at(row, first)], &low_[at(row, last)] + 1);
+      row_high_[at(row, column)] =
+          *std::max_element(&high_[at(row, first)], &high_[at(row, last)] + 1);
+    }
+  });
+  tbb::parallel_for(0, rows_, [&](int row) {
+    const int first = std::max(row - reach_y, 0), last = std::min(row + reach_y, rows_ - 1);
+    for (int column = 0; column < columns_; ++column) {
+      float low = kInfinity, high = -kInfinity;
+      for (int r = first; r <= last; ++r) {
+        low = std::min(low, row_low_[at(r, column)]);
+        high = std::max(high, row_high_[at(r, column)]);
+      }
+      std::uint8_t& narrowest = zone_[at(row, column)];
+      if (high - low > tolerance && narrowest > zone) narrowest = static_cast<std::uint8_t>(zone);
+    }
+  });
+}
+
+double ActivityMap::active_share(int zone) const {
+  if (zone_.empty()) return 0;
+  return static_cast<double>(
+             std::count_if(zone_.begin(), zone_.end(), [&](std::uint8_t z) { return z <= zone; })) /
+         static_cast<double>(zone_.size());
 }
 
 }  // namespace holdfast

@@ -11,10 +11,14 @@ namespace holdfast {
 /// Which tiles of an image have anything to filter. A tile rests when the signals are constant over
 /// the surfaces of its neighbourhood: a weighted mean there returns what it is given, so that
 /// passes may copy it. Most of a frame is fully lit or fully in shadow.
+///
+/// The passes of a filter reach differently far; each has a zone of its own, a halo around what
+/// varies.
 class ActivityMap {
  public:
-  static constexpr int kTileWidth = 64;  ///< pixels
-  static constexpr int kTileHeight = 8;  ///< rows
+  static constexpr int kTileWidth = 16;    ///< pixels: a cache line of floats
+  static constexpr int kTileHeight = 8;    ///< rows
+  static constexpr int kWidestZone = 254;  ///< for `active`: any of the zones
 
   ActivityMap() = default;
   ActivityMap(int width, int height);
@@ -23,18 +27,34 @@ class ActivityMap {
   /// differ by more than `tolerance` within the tile and the tiles around it that the halo reaches.
   /// With `around_zero`, a tile whose signals are constant but not 0 is active, too.
   void measure(const Guides& guides, std::span<const ChannelView<const float>> signals, int halo,
-               float tolerance, bool around_zero = false);
-
-  bool active(int x, int y) const {
-    return active_[static_cast<std::size_t>(y / kTileHeight * columns_ + x / kTileWidth)] != 0;
+               float tolerance, bool around_zero = false) {
+    measure(guides, signals, {&halo, 1}, tolerance, around_zero);
   }
-  /// Share of active tiles, 0..1.
-  double active_share() const;
+
+  /// The same for several zones: zone k is what is active for halos[k]. Halos do not fall.
+  void measure(const Guides& guides, std::span<const ChannelView<const float>> signals,
+               std::span<const int> halos, float tolerance, bool around_zero = false);
+
+  /// Whether the tile of pixel (x, y) is active in a zone.
+  bool active(int x, int y, int zone = kWidestZone) const {
+    return zone_[static_cast<std::size_t>(y / kTileHeight * columns_ + x / kTileWidth)] <= zone;
+  }
+  /// Share of tiles that are active in a zone, 0..1.
+  double active_share(int zone = kWidestZone) const;
 
  private:
+  static constexpr std::uint8_t kRest = 255;
+
+  void measure_ranges(const Guides& guides, ChannelView<const float> signal, bool around_zero);
+  void mark(int halo, int zone, float tolerance);
+  std::size_t at(int row, int column) const {
+    return static_cast<std::size_t>(row * columns_ + column);
+  }
+
   int columns_ = 0, rows_ = 0;
-  std::vector<std::uint8_t> active_;
-  std::vector<float> low_, high_;  ///< of one signal, by tile
+  std::vector<std::uint8_t> zone_;  ///< the narrowest zone that a tile is active in, or kRest
+  std::vector<float> low_, high_;   ///< of one signal, by tile
+  std::vector<float> row_low_, row_high_;  ///< of the tiles of one row that a halo reaches
 };
 
 }  // namespace holdfast

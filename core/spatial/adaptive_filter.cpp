@@ -1,47 +1,83 @@
 #include "core/spatial/adaptive_filter.h"
 
-#include <cmath>
+#include <cassert>
+#include <span>
 #include <utility>
 
 #include "core/kernels/parallel.h"
+#include "core/spatial/filter_rows.h"
 
 namespace holdfast {
 namespace {
 
-constexpr int kLuminanceReach = 3;       // px, of the two passes that prepare the luminance
 constexpr float kRestTolerance = 1e-6f;  // absolute; rounding of a constant visibility
 
+/// Zones of the activity map, one a pass. What the last level of `levels` writes differs from its
+/// input within the reach of all levels; what comes before it must be exact, spread included, as
+/// far as later passes look.
+class Zones {
+ public:
+  explicit Zones(int levels) : levels_(levels) {
+    const int reach = 2 * ((1 << levels) - 1);
+    int halo = reach;
+    for (int level = levels - 1; level >= 0; --level) {
+      halos_[levels - 1 - level] = halo;
+      halo += level > 0 ? 2 << level : 0;
+    }
+    halos_[levels] = halo;          // the second pass of the luminance, of step 2
+    halos_[levels + 1] = halo + 2;  // the first
+  }
+  int of_level(int level) const { return levels_ - 1 - level; }
+  int of_first_level() const { return levels_ - 1; }
+  int of_luminance(int pass) const { return levels_ + 1 - pass; }
+  std::span<const int> halos() const { return {halos_, static_cast<std::size_t>(levels_ + 2)}; }
+
+ private:
+  int levels_;
+  int halos_[kMostLevels + 2];
+};
+
 /// Narrows the footprint by a local mean of the samples: precision times samples^(1/4).
-void narrow_footprint(const Guides& guides, const Signal& signal, FilterScratch& s) {
+void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& zones,
+                      FilterScratch& s) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.step = 2;
   pass.channels = 1;
   pass.activity = &s.activity;
+  pass.activity_zone = zones.of_first_level();
   pass.spread = Spread::kVariance;
   pass.in[0] = signal.samples;
   pass.out[0] = s.guide[2];
   pass.spread_in = signal.samples;
   pass.spread_out = s.spread[1];  // not used
-  filter_image(pass);
+  const Channels<float>& footprint = *signal.footprint;
   for_each_row(guides.view.height, [&](int y) {
-    const float* samples = s.guide[2].row(y);
-    for (int c = 0; c < 3; ++c) {
-      const float* in = (*signal.footprint)[c].row(y);
-      float* to = s.footprint[c].row(y);
-      for (int x = 0; x < guides.view.width; ++x) to[x] = in[x] * std::sqrt(std::sqrt(samples[x]));
-    }
+    pass_row(pass, y);
+    narrow_row({{footprint[0].row(y), footprint[1].row(y), footprint[2].row(y)},
+                s.guide[2].row(y),
+                guides.view.width,
+                {s.footprint[0].row(y), s.footprint[1].row(y), s.footprint[2].row(y)}});
   });
 }
 
 /// Fills guide[0] with a local mean of the luminance and guide[1] with its inverse tolerance.
 void prepare_luminance(const Guides& guides, const Signal& signal, float luminance_sigma,
-                       FilterScratch& s) {
+                       const Zones& zones, FilterScratch& s) {
   const int width = guides.view.width, height = guides.view.height;
-  for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) s.guide[0].at(x, y) = signal.luminance_at(x, y);
-  });
+  const Channels<float>& values = *signal.values;
+  ChannelView<const float> luminance = values[0];
+  if (signal.channels == 3) {
+    luminance = std::as_const(s.guide)[0];
+    for_each_row(height, [&](int y) {
+      luminance_row({{values[0].row(y), values[1].row(y), values[2].row(y)},
+                     3,
+                     width,
+                     s.guide[0].row(y),
+                     nullptr});
+    });
+  }
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
@@ -50,21 +86,22 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
   pass.spread = Spread::kSamples;
   if (signal.footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = (*signal.footprint)[c];
-  for (int level = 0; level < 2; ++level) {
-    pass.step = 1 << level;
-    pass.in[0] = std::as_const(s.guide)[level == 0 ? 0 : 2];
-    pass.out[0] = s.guide[level == 0 ? 2 : 0];
-    pass.spread_in = level == 0 ? signal.samples : std::as_const(s.spread)[1];
-    pass.spread_out = s.spread[level == 0 ? 1 : 0];
-    filter_image(pass);
-  }
+  pass.activity_zone = zones.of_luminance(0);
+  pass.in[0] = luminance;
+  pass.out[0] = s.guide[2];
+  pass.spread_in = signal.samples;
+  pass.spread_out = s.spread[1];
+  filter_image(pass);
+  pass.activity_zone = zones.of_luminance(1);
+  pass.step = 2;
+  pass.in[0] = std::as_const(s.guide)[2];
+  pass.out[0] = s.guide[0];
+  pass.spread_in = std::as_const(s.spread)[1];
+  pass.spread_out = s.spread[0];
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float mean = s.guide[0].at(x, y);
-      const float sd = std::sqrt(signal.sample_variance.at(x, y) / s.spread[0].at(x, y));
-      // The second term keeps rounding of a noise-free signal from counting as an edge.
-      s.guide[1].at(x, y) = 1.0f / (luminance_sigma * sd + 1e-3f * std::abs(mean) + 1e-12f);
-    }
+    pass_row(pass, y);
+    tolerance_row({s.guide[0].row(y), signal.sample_variance.row(y), s.spread[0].row(y),
+                   luminance_sigma, width, s.guide[1].row(y)});
   });
 }
 
@@ -72,14 +109,14 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 
 void adaptive_filter(const Guides& guides, const Signal& signal,
                      const AdaptiveFilterSettings& settings, FilterScratch& s, Plane& out) {
+  assert(settings.levels >= 1 && settings.levels <= kMostLevels);
   ChannelView<const float> values[3];
   for (int c = 0; c < signal.channels; ++c) values[c] = (*signal.values)[c];
-  // Twice the reach of all passes: beyond it, nothing that a copied tile leaves out can matter.
-  const int reach = 2 * ((1 << settings.levels) - 1) + kLuminanceReach;
-  s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, 2 * reach,
+  const Zones zones(settings.levels);
+  s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, zones.halos(),
                      kRestTolerance);
-  prepare_luminance(guides, signal, settings.luminance_sigma, s);
-  if (signal.footprint != nullptr) narrow_footprint(guides, signal, s);
+  prepare_luminance(guides, signal, settings.luminance_sigma, zones, s);
+  if (signal.footprint != nullptr) narrow_footprint(guides, signal, zones, s);
 
   FilterRow pass;
   pass.guides = &guides;
@@ -98,6 +135,7 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
       pass.out[c] = level + 1 == settings.levels ? out.channel(c) : to[c];
     }
     pass.step = 1 << level;
+    pass.activity_zone = zones.of_level(level);
     pass.spread_in = level == 0 ? signal.samples : std::as_const(s.spread)[level % 2];
     pass.spread_out = s.spread[1 - level % 2];
     filter_image(pass);

@@ -5,9 +5,11 @@
 
 namespace holdfast {
 
+inline constexpr int kMostLevels = 8;  ///< of `adaptive_filter`: a reach of 510 pixels
+
 /// Constants of `adaptive_filter` that differ between components.
 struct AdaptiveFilterSettings {
-  int levels = 3;                 ///< a-trous levels, >= 1
+  int levels = 3;                 ///< a-trous levels, 1..kMostLevels
   float luminance_sigma = 16.0f;  ///< in standard deviations of the edge-stopping luminance
 };
 

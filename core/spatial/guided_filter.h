@@ -54,6 +54,7 @@ struct FilterRow {
   ChannelView<const float> footprint[3];
   /// Tiles at rest copy their inputs. Null: all tiles are active.
   const ActivityMap* activity = nullptr;
+  int activity_zone = ActivityMap::kWidestZone;  ///< of `activity`, outside which tiles rest
 };
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
@@ -61,6 +62,12 @@ struct FilterRow {
 /// channels with kVariance; with luminance, 1 or 3 channels with either spread, and 1 channel with
 /// kSamples and footprint. Asserts that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
+
+/// Runs `pass` at row y.
+inline void pass_row(FilterRow pass, int y) noexcept {
+  pass.y = y;
+  filter_row(pass);
+}
 
 /// Runs `row` for every y of the image, in parallel. Inputs and outputs must not overlap.
 void filter_image(const FilterRow& row);

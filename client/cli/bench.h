@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace holdfast::cli {
+
+/// What `holdfast bench` runs.
+struct BenchOptions {
+  std::string scene = "fence";       ///< built-in scene, scene JSON file, or folder of a sequence
+  int width = 1920, height = 1080;   ///< pixels; of no effect on a sequence
+  std::vector<std::string> recipes;  ///< empty = "reliable"
+  int frames = 8;                    ///< timed frames of each recipe, >= 1, after two of warm-up
+  int threads = 0;                   ///< that filter; 0 = one for each core
+  bool reference = true;             ///< also time the scalar kernels
+};
+
+/// One stage of the core, as medians over frames.
+struct BenchStage {
+  std::string stage;
+  double ns_per_pixel = 0;
+  double bytes_per_pixel = 0;         ///< that its passes read and write, each plane once a pass
+  double reference_ns_per_pixel = 0;  ///< with the scalar kernels; 0 = not measured
+};
+
+/// One recipe's whole frame inside the core, as a median over frames.
+struct BenchFrame {
+  std::string recipe, preset;
+  double ms = 0;
+};
+
+struct BenchResult {
+  std::string isa;
+  int threads = 0, width = 0, height = 0;
+  std::vector<BenchStage> stages;  ///< of the first recipe
+  std::vector<BenchFrame> frames;  ///< of every recipe
+  std::string plan;                ///< of the first recipe
+};
+
+/// Times the core alone: frames are in memory before the first is filtered, and results are
+/// dropped.
+///
+/// The reference of a stage is the same stage in the same run on the same number of threads, its
+/// kernels compiled for plain scalar code. What is no kernel is the same code in both.
+/// Throws InputError for a bad option or scene.
+BenchResult run_bench(const BenchOptions& options);
+
+/// The machine-readable form of a result.
+nlohmann::ordered_json bench_json(const BenchResult& result);
+
+/// The same for people: a line a stage, then a line a recipe.
+std::string bench_text(const BenchResult& result);
+
+}  // namespace holdfast::cli

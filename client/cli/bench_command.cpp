@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <memory>
+
+#include "client/cli/bench.h"
+#include "client/cli/command.h"
+#include "client/cli/image_size.h"
+#include "client/cli/json_file.h"
+#include "client/scenes/load.h"
+
+namespace holdfast::cli {
+
+void add_bench(CLI::App& app) {
+  struct Arguments {
+    BenchOptions options;
+    std::string size = "1920x1080", json;
+    bool plan = false, quiet = false, no_reference = false;
+  };
+  const auto args = std::make_shared<Arguments>();
+  BenchOptions& options = args->options;
+  CLI::App& command = *app.add_subcommand("bench", "Time the core alone, stage by stage");
+  command
+      .add_option("--scene", options.scene,
+                  "Folder of a sequence, scene JSON file, or a built-in scene: " +
+                      scenes::builtin_scene_names())
+      ->capture_default_str();
+  command.add_option("--size", args->size, "WIDTHxHEIGHT in pixels; a sequence has its own")
+      ->capture_default_str();
+  command
+      .add_option("--recipes", options.recipes,
+                  "Recipes, with commas between; stages are the first one's. Default: reliable")
+      ->delimiter(',');
+  command.add_option("--frames", options.frames, "Timed frames of each recipe, after two others")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "That filter; default: one for each core")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("--no-reference", args->no_reference, "Do not time the scalar kernels");
+  command.add_flag("--plan", args->plan, "Also print the first recipe's plan");
+  command.add_flag("--quiet", args->quiet, "No table");
+  command.add_option("--json", args->json, "File for the machine-readable result");
+  command.callback([args] {
+    parse_image_size("option --size", args->size, args->options.width, args->options.height);
+    args->options.reference = !args->no_reference;
+    const BenchResult result = run_bench(args->options);
+    if (!args->json.empty()) write_json_file(args->json, bench_json(result));
+    if (args->plan) std::fputs(result.plan.c_str(), stdout);
+    if (!args->quiet) std::fputs(bench_text(result).c_str(), stdout);
+  });
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,66 @@
+#include "client/cli/bench_frames.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "client/scenes/load.h"
+#include "client/scenes/renderer.h"
+#include "client/sequence/sequence.h"
+
+namespace holdfast::cli {
+namespace {
+
+constexpr int kHeld = 4;  // frames in memory: 170 MB each at 1920x1080 with three components
+
+/// Adds to each frame's table what stands where an earlier frame put it: frames are also played
+/// backwards.
+void complete_tables(std::vector<Frame>& frames) {
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    frames[i].objects.insert(frames[i - 1].objects.begin(), frames[i - 1].objects.end());
+    frames[i].lights.insert(frames[i - 1].lights.begin(), frames[i - 1].lights.end());
+  }
+}
+
+}  // namespace
+
+BenchFrames::BenchFrames(const std::string& scene, int width, int height) {
+  if (std::filesystem::is_directory(scene))
+    read(scene);
+  else
+    render(scene, width, height);
+  complete_tables(frames_);
+  for (const Plane& plane : frames_.front().planes) config_.planes.push_back(plane.id());
+}
+
+void BenchFrames::read(const std::string& dir) {
+  const SequenceReader sequence(dir);
+  config_.width = sequence.header().width;
+  config_.height = sequence.header().height;
+  config_.lights = sequence.header().lights;
+  for (const std::int64_t index : sequence.frame_indices()) {
+    if (frames_.size() == kHeld) break;
+    frames_.push_back(sequence.read_frame(index));
+  }
+}
+
+void BenchFrames::render(const std::string& scene, int width, int height) {
+  scenes::RenderSettings settings;
+  settings.width = width;
+  settings.height = height;
+  scenes::Renderer renderer(scenes::load_scene(scene), settings);
+  config_.width = width;
+  config_.height = height;
+  config_.lights = renderer.lights();
+  for (int i = 0; i < kHeld; ++i) frames_.push_back(renderer.frame(i));
+}
+
+const Frame& BenchFrames::at(int step) {
+  const int last = static_cast<int>(frames_.size()) - 1;
+  const int phase = last > 0 ? step % (2 * last) : 0;
+  Frame& frame = frames_[static_cast<std::size_t>(std::min(phase, 2 * last - phase))];
+  frame.index = step;
+  frame.cut = false;
+  return frame;
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/denoiser/denoiser.h"
+
+namespace holdfast::cli {
+
+/// A few successive frames in memory, as long a stream as wanted: they are played forwards and
+/// backwards in turn, so that motion never jumps.
+class BenchFrames {
+ public:
+  /// Renders `scene` (a built-in scene or a scene JSON file) at width x height, or reads the first
+  /// frames of a sequence if `scene` is a folder; then its own size counts. Throws InputError.
+  BenchFrames(const std::string& scene, int width, int height);
+
+  /// The frame to filter as the `step`-th, step = 0, 1, ...; valid until the next call.
+  const Frame& at(int step);
+
+  /// Size, lights and planes of the frames; recipe and preset are the defaults.
+  const DenoiserConfig& config() const { return config_; }
+
+ private:
+  void read(const std::string& dir);
+  void render(const std::string& scene, int width, int height);
+
+  DenoiserConfig config_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace holdfast::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/denoiser/denoiser.h"
+
+namespace holdfast {
+
+/// Times the stages of a frame: each call of `end` names the stage that has just ended.
+class StageTimer {
+ public:
+  explicit StageTimer(std::vector<StageTime>& out) : out_(out), last_(Clock::now()) {}
+
+  /// Names of stages begin with "COMPONENT." from here on; with nothing, if it is empty.
+  void enter(const std::string& component) { prefix_ = component.empty() ? "" : component + "."; }
+
+  /// `channels_moved`: images of one float that the stage's passes read or write, each once a pass;
+  /// what must go through memory at least if caches keep nothing from pass to pass.
+  void end(const char* stage, int channels_moved) {
+    const auto now = Clock::now();
+    out_.push_back({prefix_ + stage, std::chrono::duration<double, std::milli>(now - last_).count(),
+                    4.0 * channels_moved});
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::vector<StageTime>& out_;
+  std::string prefix_;
+  Clock::time_point last_;
+};
+
+}  // namespace holdfast

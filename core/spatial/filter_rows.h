@@ -1,0 +1,48 @@
+#pragma once
+
+#include "core/frame/plane.h"
+
+/// Passes of the spatial filters that look at one pixel at a time, a row a call, on the selected
+/// instruction set. Halo 0; rows of one call must not overlap, but for `narrow`'s.
+namespace holdfast {
+
+/// out = luminance of the channels, Rec. 709; of one channel, the channel itself. `squares` (may be
+/// null) receives its square.
+struct LuminanceRow {
+  const float* in[3];
+  int channels, width;  ///< 1 or 3; pixels
+  float *out, *squares;
+};
+void luminance_row(const LuminanceRow& row) noexcept;
+
+/// out = 1 / (sigma sqrt(variance / samples) + 1e-3 |mean| + 1e-12): how many tolerances a unit of
+/// luminance is. The second term keeps rounding of a noise-free signal from counting as an edge.
+struct ToleranceRow {
+  const float *mean, *variance, *samples;
+  float sigma;
+  int width;
+  float* out;
+};
+void tolerance_row(const ToleranceRow& row) noexcept;
+
+/// out[c] = in[c] * samples^(1/4), for the three terms of a footprint.
+struct NarrowRow {
+  const float *in[3], *samples;
+  int width;
+  float* out[3];
+};
+void narrow_row(const NarrowRow& row) noexcept;
+
+/// From local means: variance = max(square - mean^2, floor), floor = floor_share mean^2 + floor_0;
+/// and, if `valid` is not null, footprint[c] = precision[c] / valid, 0 where valid is 0.
+struct StatisticsRow {
+  const float *mean, *square;
+  float floor_share, floor_0;
+  const float *valid, *precision[3];
+  int width;
+  float* variance;  ///< may be `square`
+  float* footprint[3];
+};
+void statistics_row(const StatisticsRow& row) noexcept;
+
+}  // namespace holdfast

@@ -1,0 +1,63 @@
+#include "tests/cli/program_test.h"
+
+namespace holdfast {
+namespace {
+
+using test::keys;
+
+class Bench : public test::ProgramTest {
+ protected:
+  nlohmann::json bench(std::vector<std::string> more) {
+    more.insert(more.begin(), {"bench", "--frames", "2", "--json", path("bench.json")});
+    EXPECT_EQ(holdfast(more), 0) << text;
+    return nlohmann::json::parse(test::file_text(dir / "bench.json"), nullptr, false);
+  }
+};
+
+TEST_F(Bench, TimesEachStageAndEachRecipe) {
+  const auto json = bench({"--scene", "fence", "--size", "70x40", "--recipes", "reliable,spatial",
+                           "--threads", "1", "--plan"});
+  EXPECT_EQ(keys(json),
+            (std::vector<std::string>{"frames", "height", "isa", "stages", "threads", "width"}));
+  EXPECT_EQ(json["width"], 70);
+  EXPECT_EQ(json["height"], 40);
+  EXPECT_EQ(json["threads"], 1);
+  double sum_ns = 0;
+  std::vector<std::string> stages;
+  for (const auto& stage : json["stages"]) {
+    stages.push_back(stage["stage"]);
+    sum_ns += stage["ns_per_pixel"].get<double>();
+    EXPECT_GT(stage["ns_per_pixel"].get<double>(), 0) << stage;
+    EXPECT_GT(stage["bytes_per_pixel"].get<double>(), 0) << stage;
+    EXPECT_GT(stage["reference_ns_per_pixel"].get<double>(), 0) << stage;
+  }
+  EXPECT_EQ(stages.front(), "guides");
+  EXPECT_EQ(stages.back(), "composite");
+  EXPECT_NE(std::find(stages.begin(), stages.end(), "light0.visibility.filter"), stages.end());
+  ASSERT_EQ(json["frames"].size(), 2u);
+  EXPECT_EQ(json["frames"][0]["recipe"], "reliable");
+  EXPECT_EQ(json["frames"][1]["recipe"], "spatial");
+  // Medians of stages need not add up to the median of frames; within a factor they must.
+  const double frame_ns = json["frames"][0]["ms"].get<double>() * 1e6 / (70 * 40);
+  EXPECT_LT(sum_ns, 2 * frame_ns);
+  EXPECT_GT(sum_ns, 0.3 * frame_ns);
+  EXPECT_NE(text.find("recipe reliable"), std::string::npos) << "the plan";
+}
+
+TEST_F(Bench, TakesASequenceAtItsOwnSize) {
+  render("cylinder", {"--frames", "2", "--reference-spp", "0"});
+  const auto json = bench({"--scene", path("in"), "--no-reference", "--quiet"});
+  EXPECT_EQ(json["width"], 64);
+  EXPECT_EQ(json["height"], 36);
+  EXPECT_EQ(json["stages"][0]["reference_ns_per_pixel"], 0.0);
+}
+
+TEST_F(Bench, RefusesAnUnknownRecipeOrSize) {
+  EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--recipes", "none"}), 2);
+  EXPECT_NE(text.find("recipe must be one of"), std::string::npos) << text;
+  EXPECT_EQ(holdfast({"bench", "--size", "wide"}), 2);
+  EXPECT_EQ(holdfast({"bench", "--frames", "0"}), 2);
+}
+
+}  // namespace
+}  // namespace holdfast
