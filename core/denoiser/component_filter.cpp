@@ -198,7 +198,12 @@ void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
     }
   } else {
-    accumulate(input.frames.now, s.noisy, sources, recipe_.accumulation, before, now, debug);
+    AccumulationRule rule = recipe_.accumulation;
+    // For indirect light the surface's vector is the right one, and no fallback to be clamped.
+    if (component_.kind == ComponentKind::kIndirect &&
+        rule.rectification == Rectification::kClampFallback)
+      rule.rectification = Rectification::kNone;
+    accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
   }
 }
 
