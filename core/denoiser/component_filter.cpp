@@ -46,6 +46,14 @@ const Channels<float>& sharpened_footprint(int height, Scratch& s) {
   return out;
 }
 
+/// A history that starts has met no later frame: without this, what was left here before a cut
+/// would count as a difference to it.
+void clear_residual(ComponentHistory& history) {
+  for_each_row(history.data.height(), [&](int y) {
+    for (int c = 0; c < 4; ++c) std::fill_n(history.residual(c).row(y), history.data.width(), 0.0f);
+  });
+}
+
 }  // namespace
 
 Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
@@ -204,6 +212,7 @@ void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
         rule.rectification == Rectification::kClampFallback)
       rule.rectification = Rectification::kNone;
     accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
+    if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
 }
 
