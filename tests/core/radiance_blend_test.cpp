@@ -6,47 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/core/history_world.h"
+#include "tests/core/radiance_history.h"
 
 namespace holdfast {
 namespace {
 
-constexpr int kWidth = 24, kHeight = 20;
-
-struct Blend : test::StillHistory {
-  RadianceBlendScratch scratch{kWidth, kHeight, 2};
-  WindowScratch window{kWidth, kHeight};
-  RadianceBlendRule rule;
-  bool at_rest = false;
-
-  Blend() : StillHistory(kWidth, kHeight, 3, HistoryExtras::kResidual) {}
-  void run(const HistorySources& sources, Channels<float>* debug = nullptr,
-           const Channels<float>* footprint = nullptr) {
-    blend_radiance(guides, noisy, sources, footprint, rule, at_rest, before, scratch, window, now,
-                   debug);
-  }
-  template <class Body>
-  static void each(const Body& body) {
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) body(x, y);
-  }
-  /// Noise of mean `colour`, uniform in 0..2 of it.
-  void render(test::Random& random, const std::array<float, 3>& colour) {
-    each([&](int x, int y) {
-      const float brightness = random.real(0, 2);
-      for (int c = 0; c < 3; ++c)
-        noisy[c].at(x, y) = brightness * colour[static_cast<std::size_t>(c)];
-    });
-  }
-  void fill_history(const std::array<float, 3>& colour, float samples) {
-    for (int c = 0; c < 3; ++c) test::fill(before.data[c], colour[static_cast<std::size_t>(c)]);
-    test::fill(before.samples(), samples);
-  }
-  void step() {
-    run(by_surface());
-    std::swap(before, now);
-  }
-};
+constexpr int kWidth = test::RadianceHistory::kWidth, kHeight = test::RadianceHistory::kHeight;
+using Blend = test::RadianceHistory;
 
 double mean_of(ChannelView<const float> image) {
   double sum = 0;
@@ -239,6 +205,30 @@ TEST(RadianceBlend, IsFiniteAndNotNegativeForExtremeInputs) {
         });
       }
     }
+}
+
+TEST(RadianceBlend, WithinAFootprintSeesOnlyWhatIsNear) {
+  // History is wrong to the right of the middle; a narrow window stays clean of it.
+  for (const bool narrow : {false, true}) {
+    Blend b;
+    test::Random random(80);
+    Blend::each([&](int x, int y) {
+      for (int c = 0; c < 3; ++c) {
+        b.noisy[c].at(x, y) = 1.0f + random.real(-0.1f, 0.1f);
+        b.before.data[c].at(x, y) = x < kWidth / 2 ? 1.0f : 3.0f;
+      }
+      b.before.samples().at(x, y) = 32.0f;
+    });
+    Channels<float> footprint(kWidth, kHeight, 3);
+    for (const int c : {0, 2}) test::fill(footprint[c], 0.7f);
+    b.run(b.by_surface(), nullptr, narrow ? &footprint : nullptr);
+    double samples = 0;
+    for (int y = 0; y < kHeight; ++y) samples += double(b.now.samples().at(kWidth / 2 - 3, y));
+    if (narrow)
+      EXPECT_GT(samples / kHeight, 10);
+    else
+      EXPECT_LT(samples / kHeight, 6);
+  }
 }
 
 }  // namespace
