@@ -58,9 +58,10 @@ class ComponentFilter {
   std::size_t history_bytes() const { return history_[0].data.bytes() + history_[1].data.bytes(); }
 
  private:
+  bool follows_effect(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
-  void blend(const ComponentInput& input, Scratch& s);
+  void blend(const ComponentInput& input, bool follows, Scratch& s);
   void filter(const ComponentInput& input, Scratch& s, Plane& out);
   void count_history(const Guides& now);
 
