@@ -128,7 +128,11 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
     core.lights.push_back({light.id(), shape_from(light), light.width_m(), light.height_m(),
                            light.radius(), radiance_from(light)});
   core.planes = planes_from(request.planes());
-  core.recipe = checked_name("recipe", request.recipe(), recipe_names(), core.recipe);
+  const auto& ablations = ablation_names();  // not announced, for measurements
+  const bool ablated =
+      std::find(ablations.begin(), ablations.end(), request.recipe()) != ablations.end();
+  core.recipe =
+      checked_name("recipe", request.recipe(), ablated ? ablations : recipe_names(), core.recipe);
   core.preset = checked_name("preset", request.preset(), preset_names(), core.preset);
   core.seed = request.seed();
   core.debug_planes = request.debug_planes();
