@@ -105,17 +105,24 @@ TEST(DualHistory, FollowsTheOccluderUnderAMovingCamera) {
   EXPECT_GT(found, 10);
 }
 
+// What moves on was joined to a part that is gone: beside it there was no background, not even
+// where that part lay flush with the wall.
 TEST(DualHistory, ThatLeadsToTheOccluderAgainIsNone) {
-  // What moves on was joined to a part that is gone: beside it there was no background.
   const double pixel = 1 / pixels_per_metre(5);
-  Occlusion o({bar(0, 20 * pixel)}, 10);
-  o.before.cards.push_back(bar(-15 * pixel, 0));
-  o.render();
-  o.run();
-  for (int x = kWidth / 2; x < kWidth / 2 + 9; ++x) {
-    ASSERT_TRUE(o.is_laid_open(x, kHeight / 2)) << x;
-    EXPECT_FALSE(o.surface.taps[0].at(x, kHeight / 2).any());
-    EXPECT_FALSE(o.has_dual(x, kHeight / 2)) << x;
+  for (const bool flush : {false, true}) {
+    Occlusion o({bar(0, 20 * pixel)}, 10);
+    o.before.cards.push_back(bar(-15 * pixel, 0));
+    o.render();
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth / 2; ++x)
+        if (flush && o.previous.id[0].at(x, y) == kOccluder)
+          test::set_pixel(o.previous, x, y, 10.0f, {0, 0, 1}, kOccluder);
+    o.run();
+    for (int x = kWidth / 2; x < kWidth / 2 + 9; ++x) {
+      ASSERT_TRUE(o.is_laid_open(x, kHeight / 2)) << x;
+      EXPECT_FALSE(o.surface.taps[0].at(x, kHeight / 2).any());
+      EXPECT_FALSE(o.has_dual(x, kHeight / 2)) << x << (flush ? " flush" : "");
+    }
   }
 }
 

@@ -80,6 +80,9 @@ TEST(Plan, MeasuresLobesOnlyWithHitsAndRoughness) {
             std::string::npos);
   EXPECT_EQ(Denoiser(with_hits(false)).plan_text().find("lobe"), std::string::npos);
   EXPECT_EQ(Denoiser(test::full_config()).plan_text().find("lobe"), std::string::npos);
+  DenoiserConfig config = test::full_config();
+  config.planes.push_back({PlaneKind::kRoughness, {}});
+  EXPECT_EQ(Denoiser(config).plan_text().find("lobe"), std::string::npos);
 }
 
 TEST(Plan, FollowsDisocclusionsOfIndirectLight) {

@@ -208,8 +208,10 @@ TEST(SceneMotion, MotionIsPreciseFarFromTheWorldsOrigin) {
 TEST(SceneMotion, NextPixelIsWhereAPointOfThePreviousFrameIsNow) {
   test::Random random(8);
   for (int trial = 0; trial < 50; ++trial) {
-    const Camera before = test::perspective_camera(kWidth, kHeight, random.in_box(1));
-    const Camera now = test::perspective_camera(kWidth, kHeight, random.in_box(1));
+    const Camera before =
+        test::perspective_camera(kWidth, kHeight, random.in_box(1), {0.05, 0, -1});
+    const Camera now =
+        test::perspective_camera(kWidth, kHeight, random.in_box(1), {-0.05, 0.1, -1});
     const glm::dmat4 t0 = test::random_rigid(random, 3, 2);
     const glm::dmat4 t1 = test::random_rigid(random, 0.1, 0.2) * t0;
     SceneMotion scene;
