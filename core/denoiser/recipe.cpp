@@ -39,6 +39,7 @@ std::vector<Recipe> make_recipes() {
   paper.shadow = ShadowVectors::kPaper;
   paper.glossy = GlossyVectors::kStochastic;
   paper.indirect = DisocclusionVectors::kDual;
+  paper.indirect_basis = RadianceBasis::kConesLuminance;
   paper.accumulation.rectification = Rectification::kClampFallback;
   Recipe paper_adaptive = paper;
   paper_adaptive.name = "paper-adaptive";
@@ -47,6 +48,7 @@ std::vector<Recipe> make_recipes() {
   reliable.shadow = ShadowVectors::kBorrowed;
   reliable.glossy = GlossyVectors::kRelative;
   reliable.indirect = DisocclusionVectors::kDual;
+  reliable.indirect_basis = RadianceBasis::kConesLuminance;
   return {spatial, traditional, clamp, clamp_box,      specular, specular_clamp,
           svgf,    asvgf,       paper, paper_adaptive, reliable};
 }

@@ -1,0 +1,169 @@
+#include "core/history/cone_history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/kernels/math.h"
+#include "core/kernels/parallel.h"
+
+namespace holdfast {
+namespace {
+
+/// Channels of `colours` sums and the samples, rounded up to whole passes.
+constexpr int channels_of(int colours) {
+  const int used = kCones * (colours + 1) + (colours == 1 ? 2 : 0);
+  return (used + kMaxFilterChannels - 1) / kMaxFilterChannels * kMaxFilterChannels;
+}
+
+/// The cone that a direction falls into, or -1.
+int cone_of(const Plane& directions, const ConeFrame<float>& frame, const glm::vec3& normal, int x,
+            int y) {
+  const glm::vec3 direction(directions.channel(0).at(x, y), directions.channel(1).at(x, y),
+                            directions.channel(2).at(x, y));
+  const float above = glm::dot(direction, normal);
+  return above > 0.0f && std::isfinite(above) ? frame.nearest(direction) : -1;
+}
+
+void mix(const ConeMix& mix, float* values) {
+  float mixed[kCones] = {};
+  for (int k = 0; k < kCones; ++k)
+    for (int j = 0; j < kCones; ++j) mixed[k] += mix.share[k][j] * values[j];
+  std::copy_n(mixed, kCones, values);
+}
+
+}  // namespace
+
+/// One pixel's.
+struct ConeHistory::Cones {
+  float sum[3][kCones] = {};
+  float samples[kCones] = {};
+  float chroma[2] = {};  ///< R and B that belong to the sum of luminance
+
+  static float total(const float* values) {
+    float sum = 0;
+    for (int k = 0; k < kCones; ++k) sum += values[k];
+    return sum;
+  }
+
+  /// L_k - sum_j W_j L_j of one colour.
+  float excess(int colour, int k, float prior) const {
+    const float count = total(samples);
+    if (!(count > 0.0f)) return 0.0f;
+    const float lean = prior * total(sum[colour]) / count;
+    float mean = 0, own = 0;
+    for (int j = 0; j < kCones; ++j) {
+      const float radiance = (sum[colour][j] + lean) / (samples[j] + prior);
+      mean += cone_weight<float>(j) * radiance;
+      own = j == k ? radiance : own;
+    }
+    return own - mean;
+  }
+
+  /// R, G, B of a unit of luminance.
+  glm::vec3 hue() const {
+    const float all = total(sum[0]);
+    if (!(all > 0.0f)) return glm::vec3(1.0f);
+    const float r = chroma[0] / all, b = chroma[1] / all;
+    return {r, std::max(1.0f - 0.2126f * r - 0.0722f * b, 0.0f) / 0.7152f, b};
+  }
+
+  void learn(const glm::vec3& sample, int colours, int k, float most) {
+    const float keep = std::min(1.0f, (most - 1.0f) / std::max(samples[k], 1e-20f));
+    samples[k] = keep * samples[k] + 1.0f;
+    if (colours == 3) {
+      for (int c = 0; c < 3; ++c) sum[c][k] = keep * sum[c][k] + sample[c];
+      return;
+    }
+    const float before = total(sum[0]);
+    const float left = before > 0.0f ? 1.0f - (1.0f - keep) * sum[0][k] / before : 0.0f;
+    sum[0][k] = keep * sum[0][k] + luminance(sample.x, sample.y, sample.z);
+    chroma[0] = left * chroma[0] + sample.x;
+    chroma[1] = left * chroma[1] + sample.z;
+  }
+};
+
+ConeHistory::ConeHistory(int width, int height, RadianceBasis basis)
+    : colours_(basis == RadianceBasis::kConesColour ? 3 : 1),
+      kept_(width, height, channels_of(colours_)),
+      updated_(width, height, channels_of(colours_)) {}
+
+/// The cones at `taps` of the frame before, in the frame of pixel (x, y)'s normal.
+ConeHistory::Cones ConeHistory::known(const FramePair& frames, const Taps& taps, int x,
+                                      int y) const {
+  Cones cones;
+  int channel = 0;
+  for (int c = 0; c < colours_; ++c)
+    for (float& sum : cones.sum[c]) sum = gather(kept_[channel++], taps);
+  for (float& samples : cones.samples) samples = gather(kept_[channel++], taps);
+  if (colours_ == 1)
+    for (float& chroma : cones.chroma) chroma = gather(kept_[channel++], taps);
+
+  const Guides& previous = frames.previous;
+  const glm::vec3 now = frames.now.normal_at(x, y);
+  const glm::vec3 before(gather(previous.normal(0), taps), gather(previous.normal(1), taps),
+                         gather(previous.normal(2), taps));
+  const float length2 = glm::dot(before, before);
+  if (glm::dot(before, now) < kSameConesCosine * std::sqrt(length2) && length2 > 0.0f) {
+    const ConeMix turned(ConeFrame<float>(glm::normalize(before)), ConeFrame<float>(now));
+    for (int c = 0; c < colours_; ++c) mix(turned, cones.sum[c]);
+    mix(turned, cones.samples);
+  }
+  return cones;
+}
+
+void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,
+                          const EffectHistory* effect, const Plane& directions,
+                          const ConeRule& rule, WindowScratch& window, Channels<float>& noisy) {
+  const Guides& now = frames.now;
+  for_each_row(now.view.height, [&](int y) {
+    for (int x = 0; x < now.view.width; ++x) {
+      Cones cones;
+      const bool on_surface = now.depth().at(x, y) > 0.0f;
+      if (on_surface && surface != nullptr) {
+        const Taps* taps = &surface->taps[0].at(x, y);
+        if (!taps->any() && effect != nullptr) taps = &effect->taps[0].at(x, y);
+        if (taps->any()) cones = known(frames, *taps, x, y);
+      }
+      const glm::vec3 normal = now.normal_at(x, y);
+      const int k = on_surface ? cone_of(directions, ConeFrame<float>(normal), normal, x, y) : -1;
+      if (k >= 0) {
+        const glm::vec3 sample(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
+        glm::vec3 excess;
+        if (colours_ == 3)
+          for (int c = 0; c < 3; ++c) excess[c] = cones.excess(c, k, rule.prior_samples);
+        else
+          excess = cones.excess(0, k, rule.prior_samples) * cones.hue();
+        for (int c = 0; c < 3; ++c) noisy[c].at(x, y) = sample[c] - excess[c];
+        cones.learn(sample, colours_, k, rule.most_samples);
+      }
+      int channel = 0;
+      for (int c = 0; c < colours_; ++c)
+        for (const float sum : cones.sum[c]) updated_[channel++].at(x, y) = sum;
+      for (const float samples : cones.samples) updated_[channel++].at(x, y) = samples;
+      if (colours_ == 1)
+        for (const float chroma : cones.chroma) updated_[channel++].at(x, y) = chroma;
+    }
+  });
+  spread_out(now, window);
+}
+
+/// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
+/// neighbours by its samples.
+void ConeHistory::spread_out(const Guides& guides, WindowScratch& window) {
+  FilterRow pass;
+  pass.guides = &guides;
+  pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
+  pass.channels = kMaxFilterChannels;
+  pass.spread_in = std::as_const(window.spread)[0];
+  pass.spread_out = window.spread[1];
+  for (int first = 0; first < kept_.count(); first += kMaxFilterChannels) {
+    for (int c = 0; c < kMaxFilterChannels; ++c) {
+      pass.in[c] = std::as_const(updated_)[first + c];
+      pass.out[c] = kept_[first + c];
+    }
+    filter_image(pass);
+  }
+}
+
+}  // namespace holdfast
