@@ -16,13 +16,12 @@ constexpr int channels_of(int colours) {
   return (used + kMaxFilterChannels - 1) / kMaxFilterChannels * kMaxFilterChannels;
 }
 
-/// The cone that a direction falls into, or -1.
-int cone_of(const Plane& directions, const ConeFrame<float>& frame, const glm::vec3& normal, int x,
-            int y) {
+/// The cone that the direction of pixel (x, y) falls into, or -1.
+int cone_of(const Plane& directions, const glm::vec3& normal, int x, int y) {
   const glm::vec3 direction(directions.channel(0).at(x, y), directions.channel(1).at(x, y),
                             directions.channel(2).at(x, y));
   const float above = glm::dot(direction, normal);
-  return above > 0.0f && std::isfinite(above) ? frame.nearest(direction) : -1;
+  return above > 0.0f && std::isfinite(above) ? ConeFrame<float>(normal).nearest(direction) : -1;
 }
 
 void mix(const ConeMix& mix, float* values) {
@@ -68,6 +67,9 @@ struct ConeHistory::Cones {
     return {r, std::max(1.0f - 0.2126f * r - 0.0722f * b, 0.0f) / 0.7152f, b};
   }
 
+  /// Into the cones of another normal, where it differs.
+  void turn(const glm::vec3& from, const glm::vec3& to, int colours);
+
   void learn(const glm::vec3& sample, int colours, int k, float most) {
     const float keep = std::min(1.0f, (most - 1.0f) / std::max(samples[k], 1e-20f));
     samples[k] = keep * samples[k] + 1.0f;
@@ -88,61 +90,92 @@ ConeHistory::ConeHistory(int width, int height, RadianceBasis basis)
       kept_(width, height, channels_of(colours_)),
       updated_(width, height, channels_of(colours_)) {}
 
-/// The cones at `taps` of the frame before, in the frame of pixel (x, y)'s normal.
-ConeHistory::Cones ConeHistory::known(const FramePair& frames, const Taps& taps, int x,
-                                      int y) const {
+/// What was kept at `taps`, of the block from (x0, y) on, as it was; 0 where there are none.
+void ConeHistory::recall(const Taps* taps, int count, int x0, int y) {
+  const std::ptrdiff_t dx = kept_.width() > 1 ? 1 : 0;
+  for (int c = 0; c < kept_.count(); ++c) {
+    float* __restrict out = updated_[c].row(y) + x0;
+    const auto in = std::as_const(kept_)[c];
+    const std::ptrdiff_t dy = in.height > 1 ? in.stride : 0;
+    for (int i = 0; i < count; ++i) {
+      const float* p = in.data + taps[i].offset;
+      const float* w = taps[i].weight;
+      out[i] = w[0] * p[0] + w[1] * p[dx] + w[2] * p[dy] + w[3] * p[dy + dx];
+    }
+  }
+}
+
+ConeHistory::Cones ConeHistory::load(int x, int y) const {
   Cones cones;
   int channel = 0;
   for (int c = 0; c < colours_; ++c)
-    for (float& sum : cones.sum[c]) sum = gather(kept_[channel++], taps);
-  for (float& samples : cones.samples) samples = gather(kept_[channel++], taps);
+    for (float& sum : cones.sum[c]) sum = updated_[channel++].at(x, y);
+  for (float& samples : cones.samples) samples = updated_[channel++].at(x, y);
   if (colours_ == 1)
-    for (float& chroma : cones.chroma) chroma = gather(kept_[channel++], taps);
-
-  const Guides& previous = frames.previous;
-  const glm::vec3 now = frames.now.normal_at(x, y);
-  const glm::vec3 before(gather(previous.normal(0), taps), gather(previous.normal(1), taps),
-                         gather(previous.normal(2), taps));
-  const float length2 = glm::dot(before, before);
-  if (glm::dot(before, now) < kSameConesCosine * std::sqrt(length2) && length2 > 0.0f) {
-    const ConeMix turned(ConeFrame<float>(glm::normalize(before)), ConeFrame<float>(now));
-    for (int c = 0; c < colours_; ++c) mix(turned, cones.sum[c]);
-    mix(turned, cones.samples);
-  }
+    for (float& chroma : cones.chroma) chroma = updated_[channel++].at(x, y);
   return cones;
+}
+
+void ConeHistory::store(const Cones& cones, int x, int y) {
+  int channel = 0;
+  for (int c = 0; c < colours_; ++c)
+    for (const float sum : cones.sum[c]) updated_[channel++].at(x, y) = sum;
+  for (const float samples : cones.samples) updated_[channel++].at(x, y) = samples;
+  if (colours_ == 1)
+    for (const float chroma : cones.chroma) updated_[channel++].at(x, y) = chroma;
+}
+
+void ConeHistory::Cones::turn(const glm::vec3& from, const glm::vec3& to, int colours) {
+  const float length2 = glm::dot(from, from);
+  if (!(length2 > 0.0f) || glm::dot(from, to) >= kSameConesCosine * std::sqrt(length2)) return;
+  const ConeMix turned(ConeFrame<float>(glm::normalize(from)), ConeFrame<float>(to));
+  for (int c = 0; c < colours; ++c) mix(turned, sum[c]);
+  mix(turned, samples);
+}
+
+/// Corrects one pixel's sample by the cones recalled for it, and adds it to them.
+void ConeHistory::correct_pixel(const FramePair& frames, const Taps& taps, const Plane& directions,
+                                const ConeRule& rule, int x, int y, Channels<float>& noisy) {
+  const glm::vec3 normal = frames.now.normal_at(x, y);
+  Cones cones = load(x, y);
+  const Guides& previous = frames.previous;
+  if (taps.any())
+    cones.turn({gather(previous.normal(0), taps), gather(previous.normal(1), taps),
+                gather(previous.normal(2), taps)},
+               normal, colours_);
+  const int k = cone_of(directions, normal, x, y);
+  if (k >= 0) {
+    const glm::vec3 sample(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
+    glm::vec3 excess;
+    if (colours_ == 3)
+      for (int c = 0; c < 3; ++c) excess[c] = cones.excess(c, k, rule.prior_samples);
+    else
+      excess = cones.excess(0, k, rule.prior_samples) * cones.hue();
+    for (int c = 0; c < 3; ++c) noisy[c].at(x, y) = sample[c] - excess[c];
+    cones.learn(sample, colours_, k, rule.most_samples);
+  }
+  store(cones, x, y);
 }
 
 void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,
                           const EffectHistory* effect, const Plane& directions,
                           const ConeRule& rule, WindowScratch& window, Channels<float>& noisy) {
+  constexpr int kBlock = 64;  // pixels: the rows of all channels stay in the first caches
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
-    for (int x = 0; x < now.view.width; ++x) {
-      Cones cones;
-      const bool on_surface = now.depth().at(x, y) > 0.0f;
-      if (on_surface && surface != nullptr) {
-        const Taps* taps = &surface->taps[0].at(x, y);
-        if (!taps->any() && effect != nullptr) taps = &effect->taps[0].at(x, y);
-        if (taps->any()) cones = known(frames, *taps, x, y);
+    Taps taps[kBlock];
+    for (int x0 = 0; x0 < now.view.width; x0 += kBlock) {
+      const int count = std::min(kBlock, now.view.width - x0);
+      for (int i = 0; i < count; ++i) {
+        taps[i] = Taps{};
+        if (surface == nullptr || !(now.depth().at(x0 + i, y) > 0.0f)) continue;
+        taps[i] = surface->taps[0].at(x0 + i, y);
+        if (!taps[i].any() && effect != nullptr) taps[i] = effect->taps[0].at(x0 + i, y);
       }
-      const glm::vec3 normal = now.normal_at(x, y);
-      const int k = on_surface ? cone_of(directions, ConeFrame<float>(normal), normal, x, y) : -1;
-      if (k >= 0) {
-        const glm::vec3 sample(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
-        glm::vec3 excess;
-        if (colours_ == 3)
-          for (int c = 0; c < 3; ++c) excess[c] = cones.excess(c, k, rule.prior_samples);
-        else
-          excess = cones.excess(0, k, rule.prior_samples) * cones.hue();
-        for (int c = 0; c < 3; ++c) noisy[c].at(x, y) = sample[c] - excess[c];
-        cones.learn(sample, colours_, k, rule.most_samples);
-      }
-      int channel = 0;
-      for (int c = 0; c < colours_; ++c)
-        for (const float sum : cones.sum[c]) updated_[channel++].at(x, y) = sum;
-      for (const float samples : cones.samples) updated_[channel++].at(x, y) = samples;
-      if (colours_ == 1)
-        for (const float chroma : cones.chroma) updated_[channel++].at(x, y) = chroma;
+      recall(taps, count, x0, y);
+      for (int i = 0; i < count; ++i)
+        if (now.depth().at(x0 + i, y) > 0.0f)
+          correct_pixel(frames, taps[i], directions, rule, x0 + i, y, noisy);
     }
   });
   spread_out(now, window);

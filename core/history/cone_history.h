@@ -11,7 +11,7 @@ namespace holdfast {
 /// Constants of ConeHistory. All ours; tuned on occluder and static.
 struct ConeRule {
   float most_samples = 8.0f;   ///< that a cone remembers; older ones fade as new ones come
-  float prior_samples = 1.0f;  ///< of the mean of all cones, which a cone with fewer leans on
+  float prior_samples = 0.03f;  ///< of the mean of all cones, which one without samples leans on
 };
 
 /// Incident radiance of every pixel by cone, from frame to frame; what it is good for is to take
@@ -44,7 +44,11 @@ class ConeHistory {
 
  private:
   struct Cones;
-  Cones known(const FramePair& frames, const Taps& taps, int x, int y) const;
+  void recall(const Taps* taps, int count, int x0, int y);
+  Cones load(int x, int y) const;
+  void store(const Cones& cones, int x, int y);
+  void correct_pixel(const FramePair& frames, const Taps& taps, const Plane& directions,
+                     const ConeRule& rule, int x, int y, Channels<float>& noisy);
   void spread_out(const Guides& guides, WindowScratch& window);
 
   int colours_ = 1;  ///< of a cone: luminance, or R, G, B

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -36,30 +37,45 @@ glm::vec<3, T> cone_axis(int k) {
   }
 }
 
-/// Share of cosine-distributed directions whose nearest axis is that of cone k, and so its weight in
-/// the irradiance: irradiance / pi = sum of weight times mean radiance. Where t is the tangent of
-/// the polar angle and phi the azimuth to the nearest outer axis, the upright cell ends at t cos phi
-/// = 1/sqrt 3, which integrates to 5 / (2 pi) atan(tan(36 deg) / 2) = 0.277; each outer cell has a
-/// fifth of the rest, 0.145 (ours; VCT's rounded 0.25 and 0.15 are biased with such samples).
+/// Share of cosine-distributed directions whose nearest axis is the upright one. Where t is the
+/// tangent of the polar angle and phi the azimuth to the nearest outer axis, that cell ends at
+/// t cos phi = 1 / sqrt 3, which integrates to 5 / (2 pi) atan(tan(36 deg) / 2) (ours).
+inline constexpr double kUprightWeight = 0.27728651033175;
+
+/// Share of cosine-distributed directions that are nearest to the axis of cone k, and so its weight
+/// in the irradiance: irradiance / pi = sum of weight times mean radiance. VCT's rounded 0.25 and
+/// 0.15 are biased with samples that are told apart this way.
 template <class T>
-T cone_weight(int k) {
-  // tan(36 deg)^2 = 5 - 2 sqrt 5
-  static const T upright = T(2.5) * std::numbers::inv_pi_v<T> *
-                           std::atan(std::sqrt(T(5) - T(2) * std::sqrt(T(5))) / T(2));
-  return k == 0 ? upright : (T(1) - upright) / T(5);
+constexpr T cone_weight(int k) {
+  return T(k == 0 ? kUprightWeight : (1 - kUprightWeight) / 5);
 }
 
-/// The rotation by the shortest arc from `kPole` to a normal. A frame that is a continuous function
-/// of the normal has to fail somewhere: this one at -kPole alone, which lies far from the axes of
+/// Axes of the cones for one direction that is up.
+template <class T>
+struct ConeAxes {
+  glm::vec<3, T> of[kCones];
+  ConeAxes() {
+    const glm::vec<3, T> up = glm::normalize(glm::vec<3, T>(T(3), T(4), T(5)));
+    const glm::vec<3, T> x = glm::normalize(glm::vec<3, T>(T(4), T(-3), T(0)));
+    const glm::mat<3, 3, T> world(x, up, glm::cross(x, up));
+    for (int k = 0; k < kCones; ++k) of[k] = world * cone_axis<T>(k);
+  }
+};
+/// Those of a surface whose normal is the pole of ConeFrame, of[0].
+template <class T>
+inline const ConeAxes<T> kPoleAxes;
+
+/// The rotation by the shortest arc from a pole to a normal. A frame that is a continuous function
+/// of the normal has to fail somewhere: this one at minus the pole alone, which lies far from the axes of
 /// the world, where floors, walls and ceilings have their normals. (The frame of Duff et al.,
 /// "Building an orthonormal basis, revisited", JCGT 6(1), 2017, jumps at a whole great circle,
 /// normals with z = 0.)
 template <class T>
 class ConeFrame {
  public:
-  /// `normal`: unit length. At -kPole itself: a half turn about an axis that the pole is normal to.
+  /// `normal`: unit length. At minus the pole: a half turn about an axis that the pole is normal to.
   explicit ConeFrame(const glm::vec<3, T>& normal)
-      : axis_(glm::cross(pole(), normal)), cosine_(glm::dot(pole(), normal)) {
+      : axis_(glm::cross(kPoleAxes<T>.of[0], normal)), cosine_(glm::dot(kPoleAxes<T>.of[0], normal)) {
     scale_ = T(1) / std::max(T(1) + cosine_, T(1e-6));
     if (T(1) + cosine_ < T(1e-6)) {
       axis_ = glm::normalize(glm::vec<3, T>(T(-4), T(3), T(0)));
@@ -69,15 +85,15 @@ class ConeFrame {
   }
 
   /// World-space axis of cone k.
-  glm::vec<3, T> axis(int k) const { return turn(resting_axis(k), axis_); }
+  glm::vec<3, T> axis(int k) const { return turn(kPoleAxes<T>.of[k], axis_); }
 
   /// The cone whose axis is nearest to `direction`, unit length.
   int nearest(const glm::vec<3, T>& direction) const {
     const glm::vec<3, T> resting = turn(direction, -axis_);
     int best = 0;
-    T most = glm::dot(resting, pole());
+    T most = glm::dot(resting, kPoleAxes<T>.of[0]);
     for (int k = 1; k < kCones; ++k) {
-      const T cosine = glm::dot(resting, resting_axis(k));
+      const T cosine = glm::dot(resting, kPoleAxes<T>.of[k]);
       if (cosine > most) {
         most = cosine;
         best = k;
@@ -91,22 +107,6 @@ class ConeFrame {
   glm::vec<3, T> turn(const glm::vec<3, T>& v, const glm::vec<3, T>& about) const {
     return cosine_ * v + glm::cross(about, v) + about * (glm::dot(about, v) * scale_);
   }
-  static const glm::vec<3, T>& pole() { return resting_axis(0); }
-  /// Axis of cone k where the normal is the pole.
-  static const glm::vec<3, T>& resting_axis(int k) {
-    struct Axes {
-      glm::vec<3, T> of[kCones];
-      Axes() {
-        const glm::vec<3, T> up = glm::normalize(glm::vec<3, T>(T(3), T(4), T(5)));
-        const glm::vec<3, T> x = glm::normalize(glm::vec<3, T>(T(4), T(-3), T(0)));
-        const glm::mat<3, 3, T> world(x, up, glm::cross(x, up));
-        for (int i = 0; i < kCones; ++i) of[i] = world * cone_axis<T>(i);
-      }
-    };
-    static const Axes axes;
-    return axes.of[k];
-  }
-
   glm::vec<3, T> axis_;  ///< sine of the angle times the axis of rotation
   T cosine_, scale_;     ///< of the angle; 1 / (1 + cosine_)
 };
