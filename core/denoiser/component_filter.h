@@ -42,7 +42,7 @@ struct ComponentInput {
   GlossyPlanes reflections;  ///< of a glossy component that follows them
   FrameKey key;
   const Plane* directions = nullptr;  ///< of the samples of a component kept by cones
-  bool gradients = false;  ///< Scratch::gradients holds samples of the component
+  bool gradients = false;             ///< Scratch::gradients holds samples of the component
 };
 
 /// Filters one component in time and space, and keeps its history.

@@ -40,10 +40,10 @@ struct Recipe {
   GlossyVectors glossy = GlossyVectors::kNone;
   DisocclusionVectors indirect = DisocclusionVectors::kNone;
   RadianceBasis indirect_basis = RadianceBasis::kIrradiance;  ///< where directions are sent
-  ConeRule cones;                 ///< of that basis, if of cones
-  AccumulationRule accumulation;  ///< of kExponential
-  int gradient_levels = 0;        ///< of the filter of gradient samples, which say where to replace
-                                  ///< history sooner; 0: does not use them
+  ConeRule cones;                                             ///< of that basis, if of cones
+  AccumulationRule accumulation;                              ///< of kExponential
+  int gradient_levels = 0;  ///< of the filter of gradient samples, which say where to replace
+                            ///< history sooner; 0: does not use them
   ExpectedErrorRule visibility_blend;  ///< of kExpectedError
   RadianceBlendRule glossy_blend;
   RadianceBlendRule indirect_blend;

@@ -10,7 +10,7 @@ namespace holdfast {
 
 /// Constants of ConeHistory. All ours; tuned on occluder and static.
 struct ConeRule {
-  float most_samples = 8.0f;   ///< that a cone remembers; older ones fade as new ones come
+  float most_samples = 8.0f;    ///< that a cone remembers; older ones fade as new ones come
   float prior_samples = 0.03f;  ///< of the mean of all cones, which one without samples leans on
 };
 

@@ -66,21 +66,26 @@ template <class T>
 inline const ConeAxes<T> kPoleAxes;
 
 /// The rotation by the shortest arc from a pole to a normal. A frame that is a continuous function
-/// of the normal has to fail somewhere: this one at minus the pole alone, which lies far from the axes of
-/// the world, where floors, walls and ceilings have their normals. (The frame of Duff et al.,
-/// "Building an orthonormal basis, revisited", JCGT 6(1), 2017, jumps at a whole great circle,
+/// of the normal has to fail somewhere: this one at minus the pole alone, which lies far from the
+/// axes of the world, where floors, walls and ceilings have their normals. (The frame of Duff et
+/// al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017, jumps at a whole great circle,
 /// normals with z = 0.)
 template <class T>
 class ConeFrame {
  public:
-  /// `normal`: unit length. At minus the pole: a half turn about an axis that the pole is normal to.
+  /// `normal`: unit length. Within 1e-4 of minus the pole all axes are reversed.
   explicit ConeFrame(const glm::vec<3, T>& normal)
-      : axis_(glm::cross(kPoleAxes<T>.of[0], normal)), cosine_(glm::dot(kPoleAxes<T>.of[0], normal)) {
-    scale_ = T(1) / std::max(T(1) + cosine_, T(1e-6));
-    if (T(1) + cosine_ < T(1e-6)) {
-      axis_ = glm::normalize(glm::vec<3, T>(T(-4), T(3), T(0)));
+      : axis_(glm::cross(kPoleAxes<T>.of[0], normal)),
+        cosine_(glm::dot(kPoleAxes<T>.of[0], normal)) {
+    const T sine2 = glm::dot(axis_, axis_);
+    if (cosine_ >= T(0)) {
+      scale_ = T(1) / (T(1) + cosine_);
+    } else if (sine2 > T(1e-8)) {
+      scale_ = (T(1) - cosine_) / sine2;  // the same, without the difference of near equals
+    } else {
+      axis_ = glm::vec<3, T>(T(0));
       cosine_ = T(-1);
-      scale_ = T(2);
+      scale_ = T(0);
     }
   }
 
@@ -119,8 +124,9 @@ template <class T>
 T cone_overlap(T d, T r) {
   const T cr = std::cos(r), sr = std::sin(r), cd = std::cos(d), sd = std::sin(d);
   if (d >= T(2) * r) return T(0);
-  const T inside = [](T v) { return std::min(std::max(v, T(-1)), T(1)); }(
-      (cd - cr * cr) / (sr * sr));
+  const T inside = [](T v) {
+    return std::min(std::max(v, T(-1)), T(1));
+  }((cd - cr * cr) / (sr * sr));
   const T wedge = sd > T(0) ? std::min((cr - cd * cr) / (sd * sr), T(1)) : T(0);
   return T(2) * (std::numbers::pi_v<T> - std::acos(inside) - T(2) * cr * std::acos(wedge));
 }
