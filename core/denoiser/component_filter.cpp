@@ -56,6 +56,14 @@ void keep_positive(Plane& radiance) {
   });
 }
 
+/// A history that starts has met no later frame: without this, what was left here before a cut
+/// would count as a difference to it.
+void clear_residual(ComponentHistory& history) {
+  for_each_row(history.data.height(), [&](int y) {
+    for (int c = 0; c < 4; ++c) std::fill_n(history.residual(c).row(y), history.data.width(), 0.0f);
+  });
+}
+
 }  // namespace
 
 Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
@@ -221,7 +229,13 @@ void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
     }
   } else {
-    accumulate(input.frames.now, s.noisy, sources, recipe_.accumulation, before, now, debug);
+    AccumulationRule rule = recipe_.accumulation;
+    // For indirect light the surface's vector is the right one, and no fallback to be clamped.
+    if (component_.kind == ComponentKind::kIndirect &&
+        rule.rectification == Rectification::kClampFallback)
+      rule.rectification = Rectification::kNone;
+    accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
+    if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
 }
 

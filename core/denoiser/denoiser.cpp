@@ -206,12 +206,23 @@ std::size_t Denoiser::memory_bytes() const {
 
 std::string Denoiser::plan_text() const { return impl_->plan.text(); }
 
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Recipe>& recipes) {
+  std::vector<std::string> names;
+  for (const Recipe& recipe : recipes) names.push_back(recipe.name);
+  return names;
+}
+
+}  // namespace
+
 const std::vector<std::string>& recipe_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> out;
-    for (const Recipe& recipe : all_recipes()) out.push_back(recipe.name);
-    return out;
-  }();
+  static const std::vector<std::string> names = names_of(all_recipes());
+  return names;
+}
+
+const std::vector<std::string>& ablation_names() {
+  static const std::vector<std::string> names = names_of(ablated_recipes());
   return names;
 }
 

@@ -81,6 +81,8 @@ const std::vector<std::string>& recipe_names();
 /// Whether planes of that kind can change the results of the recipe of that name, so that it is
 /// worth sending them. Gradient planes: only for recipes with gradients, never for unknown names.
 bool recipe_uses(std::string_view recipe, PlaneKind kind);
+/// `reliable` with one part taken away each, accepted wherever a recipe is named: for measurements.
+const std::vector<std::string>& ablation_names();
 /// Names of the presets, fastest first.
 const std::vector<std::string>& preset_names();
 /// Result planes of a configuration: the composite, then each component's planes.

@@ -12,9 +12,44 @@ Recipe base(std::string name, Blending blending = Blending::kExponential) {
   recipe.name = std::move(name);
   recipe.blending = blending;
   // Reflections slide without a sign in their surface: the slightest difference counts.
-  recipe.glossy_blend.sudden_threshold = 1.0f;
+  recipe.glossy_blend.sudden_threshold = 0.3f;
   recipe.radiance_filter = {.levels = 4, .luminance_sigma = 4.0f};
   return recipe;
+}
+
+Recipe make_reliable() {
+  Recipe reliable = base("reliable", Blending::kExpectedError);
+  reliable.shadow = ShadowVectors::kBorrowed;
+  reliable.glossy = GlossyVectors::kRelative;
+  reliable.indirect = DisocclusionVectors::kDual;
+  reliable.indirect_basis = RadianceBasis::kConesLuminance;
+  return reliable;
+}
+
+std::vector<Recipe> make_ablated() {
+  std::vector<Recipe> recipes;
+  const auto without = [&](const char* part) -> Recipe& {
+    Recipe& recipe = recipes.emplace_back(make_reliable());
+    recipe.name += std::string("-without-") + part;
+    return recipe;
+  };
+  without("shadow-vectors").shadow = ShadowVectors::kNone;
+  without("reflection-vectors").glossy = GlossyVectors::kNone;
+  without("dual-vectors").indirect = DisocclusionVectors::kNone;
+  without("cones").indirect_basis = RadianceBasis::kIrradiance;
+  Recipe& residual = without("lasting-difference");
+  residual.glossy_blend.residual_beta = residual.indirect_blend.residual_beta = 1.0f;
+  Recipe& rest = without("trust-at-rest");
+  for (RadianceBlendRule* rule : {&rest.glossy_blend, &rest.indirect_blend}) {
+    rule->rest_sudden_threshold = rule->sudden_threshold;
+    rule->rest_threshold = rule->noise_threshold;
+  }
+  rest.visibility_blend.rest_threshold = rest.visibility_blend.slow_threshold = 0.0f;
+  // Bias then counts as noise does: the plain expected error.
+  Recipe& weighing = without("weight-of-bias");
+  weighing.visibility_blend.spatial_samples = weighing.glossy_blend.spatial_samples =
+      weighing.indirect_blend.spatial_samples = 1.0f;
+  return recipes;
 }
 
 std::vector<Recipe> make_recipes() {
@@ -44,11 +79,7 @@ std::vector<Recipe> make_recipes() {
   Recipe paper_adaptive = paper;
   paper_adaptive.name = "paper-adaptive";
   paper_adaptive.gradient_levels = 2;
-  Recipe reliable = base("reliable", Blending::kExpectedError);
-  reliable.shadow = ShadowVectors::kBorrowed;
-  reliable.glossy = GlossyVectors::kRelative;
-  reliable.indirect = DisocclusionVectors::kDual;
-  reliable.indirect_basis = RadianceBasis::kConesLuminance;
+  const Recipe reliable = make_reliable();
   return {spatial, traditional, clamp, clamp_box,      specular, specular_clamp,
           svgf,    asvgf,       paper, paper_adaptive, reliable};
 }
@@ -60,7 +91,14 @@ const std::vector<Recipe>& all_recipes() {
   return recipes;
 }
 
+const std::vector<Recipe>& ablated_recipes() {
+  static const std::vector<Recipe> recipes = make_ablated();
+  return recipes;
+}
+
 const Recipe& find_recipe(std::string_view name) {
+  for (const Recipe& recipe : ablated_recipes())
+    if (recipe.name == name) return recipe;
   std::string names;
   for (const Recipe& recipe : all_recipes()) {
     if (recipe.name == name) return recipe;

@@ -56,7 +56,11 @@ struct Recipe {
 /// All recipes, in the order of the documentation.
 const std::vector<Recipe>& all_recipes();
 
-/// The recipe of that name. Throws InputError listing the names if there is none.
+/// `reliable` with one of its parts taken away, named `reliable-without-PART`: what each is worth.
+const std::vector<Recipe>& ablated_recipes();
+
+/// The recipe of that name, ablated ones included. Throws InputError listing the names if there is
+/// none.
 const Recipe& find_recipe(std::string_view name);
 
 }  // namespace holdfast

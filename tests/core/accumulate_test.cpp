@@ -171,7 +171,7 @@ TEST(Accumulate, FallbackClampSparesTheShadowVector) {
 }
 
 TEST(Accumulate, MomentsFollowTheSameBlend) {
-  StillHistory h(1, 1, 1, true);
+  StillHistory h(1, 1, 1, HistoryExtras::kMoments);
   test::fill(h.noisy[0], 0.5f);
   test::fill(h.before.moment(1), 0.8f);
   test::fill(h.before.moment(2), 0.7f);

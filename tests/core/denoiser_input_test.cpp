@@ -25,7 +25,8 @@ TEST(DenoiserConfig, ThatBreaksARuleIsRejectedByName) {
   expect([](DenoiserConfig& c) { c.height = 16385; }, "frame size", "1..16384", "37x16385");
   expect([](DenoiserConfig& c) { c.width = -3; }, "frame size", "1..16384", "-3x29");
   expect([](DenoiserConfig& c) { c.recipe = "magic"; }, "recipe",
-         "spatial, traditional, clamp, clamp-box, svgf, asvgf, paper, paper-adaptive, reliable",
+         "spatial, traditional, clamp, clamp-box, specular, specular-clamp, svgf, asvgf, paper, "
+         "paper-adaptive, reliable",
          "'magic'");
   expect([](DenoiserConfig& c) { c.preset = "slow"; }, "preset", "balanced", "'slow'");
   expect([](DenoiserConfig& c) { c.lights.push_back(c.lights[0]); }, "light 0", "once", "twice");

@@ -115,7 +115,7 @@ TEST(Gradients, ThatAreNoRadianceAreRepairedAndCounted) {
 }
 
 TEST(Accumulate, GradientsTakeAlphaTowardsOneAndShortenHistory) {
-  test::StillHistory h(7, 1, 1, true);
+  test::StillHistory h(7, 1, 1, HistoryExtras::kMoments);
   test::fill(h.noisy[0], 1.0f);
   test::fill(h.before.samples(), 100.0f);
   Channels<float> lambda(3, 1, 1);

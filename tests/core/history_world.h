@@ -14,8 +14,7 @@ struct StillHistory {
   Channels<float> noisy;
   ComponentHistory before, now;
 
-  StillHistory(int w, int h, int channels,
-               HistoryExtras extras = HistoryExtras::kNone)
+  StillHistory(int w, int h, int channels, HistoryExtras extras = HistoryExtras::kNone)
       : width(w),
         height(h),
         guides(wall(orthographic_camera(w, h), w, h)),

@@ -198,6 +198,8 @@ TEST(ShadedLight, MaterialsOutOfRangeAddNoMoreThanWhiteOnes) {
       Rendered rendered(scenes::rectangle_light(), {0.8, 2.2, -1.0}, kTiles);
       for (const PlaneKind other : {PlaneKind::kEmission, PlaneKind::kGlossy, PlaneKind::kIndirect})
         rendered.drop({other, {}});
+      for (const ComponentKind of : {ComponentKind::kGlossy, ComponentKind::kIndirect})
+        rendered.drop({PlaneKind::kGradient, {of, 0}});
       rendered.drop(of_light(PlaneKind::kUnshadowed));
       Plane& plane = *rendered.frame.planes.find({kind, {}});
       for (int c = 0; c < plane.channels(); ++c)

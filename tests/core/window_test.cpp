@@ -1,5 +1,8 @@
 #include "core/spatial/window.h"
 
+#include <cmath>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "tests/core/small_world.h"
@@ -84,6 +87,87 @@ TEST(WindowMeans, StopAtEdgesOfDepthAndNormal) {
         ASSERT_NEAR(w.out[0].at(x, y), x < 12 ? 1.0f : 1000.0f, x < 12 ? 1e-5f : 1e-2f)
             << (by_normal ? "normal " : "depth ") << x;
   }
+}
+
+TEST(WindowMeans, GoToTheChannelsFromTheFirstOneOnAndToNoOthers) {
+  Window w;
+  w.run(2);
+  Channels<float> wide(kWidth, kHeight, 5);
+  for (int c = 0; c < 5; ++c) test::fill(wide[c], -7.0f);
+  window_means(w.guides, w.in, 2, 2, w.scratch, wide, 2);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      for (const int c : {0, 1, 4}) ASSERT_EQ(wide[c].at(x, y), -7.0f) << c;
+      for (const int c : {0, 1}) ASSERT_EQ(wide[2 + c].at(x, y), w.out[c].at(x, y)) << c;
+    }
+}
+
+/// Four channels on the same wall, with a footprint of precision E, F, G everywhere.
+struct FootprintWindow {
+  Guides guides = test::wall(test::orthographic_camera(kWidth, kHeight), kWidth, kHeight);
+  Channels<float> in{kWidth, kHeight, 4}, out{kWidth, kHeight, 4}, footprint{kWidth, kHeight, 3};
+  WindowScratch scratch{kWidth, kHeight};
+
+  FootprintWindow(float e, float f, float g) {
+    test::Random random(32);
+    for (int c = 0; c < 4; ++c) test::fill_random(in[c], random, 0, 1);
+    test::fill(footprint[0], e);
+    test::fill(footprint[1], f);
+    test::fill(footprint[2], g);
+  }
+  ChannelView<const float> run(const Channels<float>* within) {
+    return window_means(guides, in, 4, 2, scratch, out, 0, nullptr, within);
+  }
+};
+
+TEST(WindowMeans, WithinAFootprintAreTwoWeightedPasses) {
+  const double e = 0.3, f = -0.1, g = 0.15;
+  FootprintWindow w(0.3f, -0.1f, 0.15f);
+  const auto inverse_n = w.run(&w.footprint);
+  const auto weight = [&](int dx, int dy) {
+    return std::exp(-(e * dx * dx + 2 * f * dx * dy + g * dy * dy));
+  };
+  for (int y = 3; y < kHeight - 3; ++y)
+    for (int x = 3; x < kWidth - 3; ++x) {
+      double sum[4] = {}, total = 0, squares = 0;
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+          double inner[4] = {}, inner_total = 0, inner_squares = 0;
+          for (int v = -1; v <= 1; ++v)
+            for (int u = -1; u <= 1; ++u) {
+              for (int c = 0; c < 4; ++c)
+                inner[c] += weight(u, v) * double(w.in[c].at(x + 2 * i + u, y + 2 * j + v));
+              inner_total += weight(u, v);
+              inner_squares += weight(u, v) * weight(u, v);
+            }
+          const double outer = weight(2 * i, 2 * j);
+          for (int c = 0; c < 4; ++c) sum[c] += outer * inner[c] / inner_total;
+          total += outer;
+          squares += outer * outer * inner_squares / (inner_total * inner_total);
+        }
+      for (int c = 0; c < 4; ++c) ASSERT_NEAR(w.out[c].at(x, y), sum[c] / total, 5e-6) << c;
+      ASSERT_NEAR(inverse_n.at(x, y), squares / (total * total), 5e-6);
+    }
+}
+
+TEST(WindowMeans, WithinAnEndlessFootprintAreThoseWithoutOne) {
+  FootprintWindow w(0, 0, 0);
+  w.run(nullptr);
+  const Channels<float> plain = std::exchange(w.out, Channels<float>(kWidth, kHeight, 4));
+  w.run(&w.footprint);
+  for (int c = 0; c < 4; ++c)
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) ASSERT_NEAR(w.out[c].at(x, y), plain[c].at(x, y), 1e-6f);
+}
+
+TEST(WindowMeans, WithinAPointsFootprintAreThePixels) {
+  FootprintWindow w(90, 0, 90);
+  const auto inverse_n = w.run(&w.footprint);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      for (int c = 0; c < 4; ++c) ASSERT_EQ(w.out[c].at(x, y), w.in[c].at(x, y));
+      ASSERT_EQ(inverse_n.at(x, y), 1.0f);
+    }
 }
 
 }  // namespace
