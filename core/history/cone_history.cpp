@@ -67,8 +67,8 @@ struct ConeHistory::Cones {
     return {r, std::max(1.0f - 0.2126f * r - 0.0722f * b, 0.0f) / 0.7152f, b};
   }
 
-  /// Into the cones of another normal, where it differs.
-  void turn(const glm::vec3& from, const glm::vec3& to, int colours);
+  /// Into the cones of another normal; returns whether that differs.
+  bool turn(const glm::vec3& from, const glm::vec3& to, int colours);
 
   void learn(const glm::vec3& sample, int colours, int k, float most) {
     const float keep = std::min(1.0f, (most - 1.0f) / std::max(samples[k], 1e-20f));
@@ -116,21 +116,25 @@ ConeHistory::Cones ConeHistory::load(int x, int y) const {
   return cones;
 }
 
-void ConeHistory::store(const Cones& cones, int x, int y) {
-  int channel = 0;
-  for (int c = 0; c < colours_; ++c)
-    for (const float sum : cones.sum[c]) updated_[channel++].at(x, y) = sum;
-  for (const float samples : cones.samples) updated_[channel++].at(x, y) = samples;
+/// Puts back cone k, or all of them (k < 0), and the chroma.
+void ConeHistory::store(const Cones& cones, int k, int x, int y) {
+  const int first = k < 0 ? 0 : k, last = k < 0 ? kCones - 1 : k;
+  for (int i = first; i <= last; ++i) {
+    for (int c = 0; c < colours_; ++c) updated_[c * kCones + i].at(x, y) = cones.sum[c][i];
+    updated_[colours_ * kCones + i].at(x, y) = cones.samples[i];
+  }
   if (colours_ == 1)
-    for (const float chroma : cones.chroma) updated_[channel++].at(x, y) = chroma;
+    for (int c = 0; c < 2; ++c) updated_[2 * kCones + c].at(x, y) = cones.chroma[c];
 }
 
-void ConeHistory::Cones::turn(const glm::vec3& from, const glm::vec3& to, int colours) {
+bool ConeHistory::Cones::turn(const glm::vec3& from, const glm::vec3& to, int colours) {
   const float length2 = glm::dot(from, from);
-  if (!(length2 > 0.0f) || glm::dot(from, to) >= kSameConesCosine * std::sqrt(length2)) return;
+  if (!(length2 > 0.0f) || glm::dot(from, to) >= kSameConesCosine * std::sqrt(length2))
+    return false;
   const ConeMix turned(ConeFrame<float>(glm::normalize(from)), ConeFrame<float>(to));
   for (int c = 0; c < colours; ++c) mix(turned, sum[c]);
   mix(turned, samples);
+  return true;
 }
 
 /// Corrects one pixel's sample by the cones recalled for it, and adds it to them.
@@ -139,10 +143,10 @@ void ConeHistory::correct_pixel(const FramePair& frames, const Taps& taps, const
   const glm::vec3 normal = frames.now.normal_at(x, y);
   Cones cones = load(x, y);
   const Guides& previous = frames.previous;
-  if (taps.any())
-    cones.turn({gather(previous.normal(0), taps), gather(previous.normal(1), taps),
-                gather(previous.normal(2), taps)},
-               normal, colours_);
+  const bool turned =
+      taps.any() && cones.turn({gather(previous.normal(0), taps), gather(previous.normal(1), taps),
+                                gather(previous.normal(2), taps)},
+                               normal, colours_);
   const int k = cone_of(directions, normal, x, y);
   if (k >= 0) {
     const glm::vec3 sample(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
@@ -154,7 +158,7 @@ void ConeHistory::correct_pixel(const FramePair& frames, const Taps& taps, const
     for (int c = 0; c < 3; ++c) noisy[c].at(x, y) = sample[c] - excess[c];
     cones.learn(sample, colours_, k, rule.most_samples);
   }
-  store(cones, x, y);
+  if (turned || k >= 0) store(cones, turned ? -1 : k, x, y);
 }
 
 void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,

@@ -46,7 +46,7 @@ class ConeHistory {
   struct Cones;
   void recall(const Taps* taps, int count, int x0, int y);
   Cones load(int x, int y) const;
-  void store(const Cones& cones, int x, int y);
+  void store(const Cones& cones, int k, int x, int y);
   void correct_pixel(const FramePair& frames, const Taps& taps, const Plane& directions,
                      const ConeRule& rule, int x, int y, Channels<float>& noisy);
   void spread_out(const Guides& guides, WindowScratch& window);
