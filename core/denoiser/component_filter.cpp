@@ -114,11 +114,12 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   measure(input, tracer ? &*tracer : nullptr, scratch);
   input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
 
-  if (follows_effect_ && input.surface != nullptr && !cones_) {
+  const bool follows = follows_effect(input);
+  if (follows && !cones_) {
     trace_effect(input, tracer ? &*tracer : nullptr, scratch);
     input.timer.end("vectors", vectors_traffic());
   }
-  blend(input, scratch);
+  blend(input, follows, scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
   filter(input, scratch, out);
@@ -127,7 +128,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
 }
 
 void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) {
-  const bool follows = follows_effect_ && input.surface != nullptr;
+  const bool follows = follows_effect(input);
   if (follows) {
     trace_effect(input, nullptr, s);
     input.timer.end("vectors", vectors_traffic());
@@ -135,6 +136,14 @@ void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) 
   cones_.correct(input.frames, input.surface, follows ? &s.effect : nullptr, *input.directions,
                  recipe_.cones, s.window, s.noisy);
   input.timer.end("cones", cones_traffic(recipe_));
+}
+
+bool ComponentFilter::follows_effect(const ComponentInput& input) const {
+  if (!follows_effect_ || input.surface == nullptr) return false;
+  // Where nothing moves, a reflection's relative vector is its surface's.
+  const bool relative =
+      component_.kind == ComponentKind::kGlossy && recipe_.glossy == GlossyVectors::kRelative;
+  return !(relative && input.frames.scene.at_rest());
 }
 
 void ComponentFilter::trace_effect(const ComponentInput& input, const ShadowTracer* tracer,
@@ -206,10 +215,10 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
   });
 }
 
-void ComponentFilter::blend(const ComponentInput& input, Scratch& s) {
+void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& s) {
   HistorySources sources;
   if (recipe_.blending != Blending::kNoHistory) sources.surface = input.surface;
-  if (sources.surface != nullptr && follows_effect_) sources.effect = &s.effect;
+  if (follows) sources.effect = &s.effect;
   if (input.gradients && sources.surface != nullptr)
     sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
   const ComponentHistory& before = history_[1 - now_];

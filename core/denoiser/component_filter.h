@@ -63,9 +63,10 @@ class ComponentFilter {
 
  private:
   void correct_by_cones(const ComponentInput& input, Scratch& s);
+  bool follows_effect(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
-  void blend(const ComponentInput& input, Scratch& s);
+  void blend(const ComponentInput& input, bool follows, Scratch& s);
   void filter(const ComponentInput& input, Scratch& s, Plane& out);
   void count_history(const Guides& now);
 

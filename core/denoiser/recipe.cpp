@@ -13,6 +13,7 @@ Recipe base(std::string name, Blending blending = Blending::kExponential) {
   recipe.blending = blending;
   // Reflections slide without a sign in their surface: the slightest difference counts.
   recipe.glossy_blend.sudden_threshold = 0.3f;
+  recipe.indirect_blend.effect_substitutes = true;
   recipe.radiance_filter = {.levels = 4, .luminance_sigma = 4.0f};
   return recipe;
 }

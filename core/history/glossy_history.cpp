@@ -20,6 +20,7 @@ struct Reflection {
   glm::vec4 previous_hit;  ///< T_h^-1 h_i, relative to the previous camera
   Receiver receiver;       ///< T_s^-1 s_i and its normal
   float hit_m;
+  bool at_rest;  ///< camera, surface and hit: the image has not moved, whatever rounding says
 };
 
 class GlossyTracer {
@@ -67,6 +68,7 @@ class GlossyTracer {
     const ObjectMotion<float>& surface = scene_.object(scene_.slot_of(now_.id[0].at(x, y)));
     const ObjectMotion<float>& hit = scene_.object(slot);
     if (!surface.traceable || !hit.traceable) return false;
+    r.at_rest = surface.at_rest && hit.at_rest;
     r.point = now_.position_at(x, y);
     r.receiver = previous_receiver(now_, surface, x, y);
     if (std::isfinite(r.hit_m)) {
@@ -80,10 +82,11 @@ class GlossyTracer {
 
   void trace_relative(int x, int y, const Reflection& r, float roughness,
                       const PixelPoint<float>& centre, EffectHistory& out) const {
-    const auto image = project(pixel_, virtual_image(r.hit, r.point, now_.normal_at(x, y)));
+    const auto image =
+        r.at_rest ? centre : project(pixel_, virtual_image(r.hit, r.point, now_.normal_at(x, y)));
     if (centre.in_front && image.in_front &&
-        try_pixel(x, y, static_cast<float>(x) + 0.5f + centre.x - image.x,
-                  static_cast<float>(y) + 0.5f + centre.y - image.y, r.receiver, roughness, out))
+        try_pixel(x, y, static_cast<float>(x) + 0.5f + (centre.x - image.x),
+                  static_cast<float>(y) + 0.5f + (centre.y - image.y), r.receiver, roughness, out))
       return;
     out.set(x, y, {}, 0, 0, 0);
   }

@@ -72,27 +72,101 @@ Promise promise_of(float samples, const Colour& d, float square_mean, float spre
   return p;
 }
 
-void gather_candidate(const Guides& guides, const Channels<float>& noisy,
-                      const Channels<Taps>& taps, const ComponentHistory& before, int candidate,
-                      RadianceBlendScratch& s) {
-  for_each_row(guides.view.height, [&](int y) {
-    for (int x = 0; x < guides.view.width; ++x) {
-      const Taps& t = taps[0].at(x, y);
+/// The pass over one frame: gathers the candidates, chooses one for each pixel, and blends.
+struct RadianceBlend {
+  const Channels<float>& noisy;
+  const HistorySources& sources;
+  const RadianceBlendRule& rule;
+  bool at_rest;
+  const ComponentHistory& before;
+  RadianceBlendScratch& s;
+  ComponentHistory& now;
+  Channels<float>* debug;
+
+  int candidates() const { return sources.effect != nullptr && !rule.effect_substitutes ? 2 : 1; }
+
+  /// True where candidate `k` follows the effect's vector.
+  bool follows_effect(int k, int x, int y) const {
+    if (sources.effect == nullptr || !rule.effect_substitutes) return k == 1;
+    return !sources.surface->taps[0].at(x, y).any();
+  }
+
+  const Taps& taps_of(int k, int x, int y) const {
+    return (follows_effect(k, x, y) ? sources.effect->taps : sources.surface->taps)[0].at(x, y);
+  }
+
+  void gather_row(int k, int y) const {
+    for (int x = 0; x < noisy.width(); ++x) {
+      const Taps& t = taps_of(k, x, y);
       const bool any = t.any();
       float sum = 0;
       for (int c = 0; c < 3; ++c) {
         const float current = noisy[c].at(x, y);
         const float value = any ? gather(before.data[c], t) : current;
-        s.candidates[kStep * candidate + c].at(x, y) = value;
+        s.candidates[kStep * k + c].at(x, y) = value;
         s.differences[c].at(x, y) = value - current;
         sum += square(value - current);
       }
-      s.candidates[kStep * candidate + kSamples].at(x, y) =
-          any ? gather(before.samples(), t) : 0.0f;
+      s.candidates[kStep * k + kSamples].at(x, y) = any ? gather(before.samples(), t) : 0.0f;
       s.differences[kSquare].at(x, y) = sum;
     }
-  });
-}
+  }
+
+  Promise promise(int k, int x, int y, float spread) const {
+    const float n = s.candidates[kStep * k + kSamples].at(x, y);
+    if (!(n > 0.0f)) return {};
+    const Taps& taps = taps_of(k, x, y);
+    Colour d;
+    Difference residual_before;
+    for (int c = 0; c < 3; ++c) {
+      d[static_cast<std::size_t>(c)] = s.means[kStep * k + c].at(x, y);
+      residual_before.mean[static_cast<std::size_t>(c)] = gather(before.residual(c), taps);
+    }
+    residual_before.variance = gather(before.residual(3), taps);
+    return promise_of(n, d, s.means[kStep * k + kSquare].at(x, y), spread, residual_before, rule,
+                      at_rest);
+  }
+
+  void blend_row(int y, const float* spread) const {
+    for (int x = 0; x < noisy.width(); ++x) {
+      int k = 0;
+      Promise chosen = promise(0, x, y, spread[x]);
+      if (candidates() == 2) {
+        const Promise effect = promise(1, x, y, spread[x]);
+        if (effect.samples > 0.0f && (chosen.samples <= 0.0f || effect.error < chosen.error)) {
+          chosen = effect;
+          k = 1;
+        }
+      }
+      blend(k, chosen, x, y);
+    }
+  }
+
+  void blend(int k, const Promise& chosen, int x, int y) const {
+    float weight = 0.0f;
+    if (chosen.samples > 0.0f)
+      weight = std::min(chosen.variance / chosen.error, rule.most_samples - 1.0f);
+    const float alpha = 1.0f / (1.0f + weight);
+    // What is subtracted from the history, or replaced by the frame, is no longer wrong with it.
+    const float kept = (1.0f - alpha) * (1.0f - chosen.correction);
+    for (int c = 0; c < 3; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      const float h =
+          s.candidates[kStep * k + c].at(x, y) - chosen.correction * chosen.bias.mean[i];
+      now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * std::max(h, 0.0f);
+      now.residual(c).at(x, y) = kept * chosen.residual.mean[i];
+    }
+    now.residual(3).at(x, y) = chosen.residual.variance;
+    now.samples().at(x, y) = 1.0f + weight;
+    if (debug == nullptr) return;
+    const Channels<float>& motion =
+        follows_effect(k, x, y) ? sources.effect->motion : sources.surface->motion;
+    (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
+    (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
+    (*debug)[kDebugFrames].at(x, y) = chosen.samples;
+    (*debug)[kDebugTrust].at(x, y) = 1.0f - alpha;
+  }
+};
 
 }  // namespace
 
@@ -101,63 +175,14 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
                     const RadianceBlendRule& rule, bool at_rest, const ComponentHistory& before,
                     RadianceBlendScratch& s, WindowScratch& window, ComponentHistory& now,
                     Channels<float>* debug) {
-  const int candidates = sources.effect != nullptr ? 2 : 1;
+  const RadianceBlend pass{noisy, sources, rule, at_rest, before, s, now, debug};
   ChannelView<const float> spread;
-  for (int k = 0; k < candidates; ++k) {
-    gather_candidate(guides, noisy, k == 0 ? sources.surface->taps : sources.effect->taps, before,
-                     k, s);
+  for (int k = 0; k < pass.candidates(); ++k) {
+    for_each_row(guides.view.height, [&](int y) { pass.gather_row(k, y); });
     spread = window_means(guides, s.differences, kStep, rule.window_step, window, s.means,
                           kStep * k, nullptr, footprint);
   }
-  for_each_row(guides.view.height, [&](int y) {
-    for (int x = 0; x < guides.view.width; ++x) {
-      const auto promise = [&](int k) {
-        const Taps& taps = (k == 0 ? sources.surface->taps : sources.effect->taps)[0].at(x, y);
-        const float n = s.candidates[kStep * k + kSamples].at(x, y);
-        if (!(n > 0.0f)) return Promise{};
-        Colour d;
-        Difference residual_before;
-        for (int c = 0; c < 3; ++c) {
-          d[static_cast<std::size_t>(c)] = s.means[kStep * k + c].at(x, y);
-          residual_before.mean[static_cast<std::size_t>(c)] = gather(before.residual(c), taps);
-        }
-        residual_before.variance = gather(before.residual(3), taps);
-        return promise_of(n, d, s.means[kStep * k + kSquare].at(x, y), spread.at(x, y),
-                          residual_before, rule, at_rest);
-      };
-      int k = 0;
-      Promise chosen = promise(0);
-      if (candidates == 2) {
-        const Promise effect = promise(1);
-        if (effect.samples > 0.0f && (chosen.samples <= 0.0f || effect.error < chosen.error)) {
-          chosen = effect;
-          k = 1;
-        }
-      }
-      float weight = 0.0f;
-      if (chosen.samples > 0.0f)
-        weight = std::min(chosen.variance / chosen.error, rule.most_samples - 1.0f);
-      const float alpha = 1.0f / (1.0f + weight);
-      // What is subtracted from the history, or replaced by the frame, is no longer wrong with it.
-      const float kept = (1.0f - alpha) * (1.0f - chosen.correction);
-      for (int c = 0; c < 3; ++c) {
-        const auto i = static_cast<std::size_t>(c);
-        const float h =
-            s.candidates[kStep * k + c].at(x, y) - chosen.correction * chosen.bias.mean[i];
-        now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * std::max(h, 0.0f);
-        now.residual(c).at(x, y) = kept * chosen.residual.mean[i];
-      }
-      now.residual(3).at(x, y) = chosen.residual.variance;
-      now.samples().at(x, y) = 1.0f + weight;
-      if (debug != nullptr) {
-        const Channels<float>& motion = k == 1 ? sources.effect->motion : sources.surface->motion;
-        (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
-        (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
-        (*debug)[kDebugFrames].at(x, y) = chosen.samples;
-        (*debug)[kDebugTrust].at(x, y) = 1.0f - alpha;
-      }
-    }
-  });
+  for_each_row(guides.view.height, [&](int y) { pass.blend_row(y, spread.row(y)); });
 }
 
 }  // namespace holdfast

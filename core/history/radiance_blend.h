@@ -8,6 +8,8 @@ namespace holdfast {
 /// Constants of the blend of radiance by expected error. Thresholds are in variances of the
 /// difference that they are held against. All ours; tuned on occluder, glossy-floor and static.
 struct RadianceBlendRule {
+  bool effect_substitutes = false;      ///< the effect's history stands in only where the surface
+                                        ///< has none, rather than beside it
   int window_step = 2;                  ///< window of a difference: 3 + 2 step pixels wide
   float sudden_threshold = 2.0f;        ///< of this frame's difference, taken for noise below
   float noise_threshold = 1.0f;         ///< of the lasting difference, likewise

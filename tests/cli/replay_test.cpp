@@ -137,7 +137,8 @@ TEST_F(Replay, EndsWithThreeWhenTheServerStopsInTheMiddle) {
 TEST_F(Replay, EndsWithTwoAndNamesAWrongArgument) {
   EXPECT_EQ(replay({"--recipe", "magic"}), 2);
   EXPECT_TRUE(
-      said("recipe must be one of spatial, traditional, clamp, clamp-box, svgf, asvgf, paper, "
+      said("recipe must be one of spatial, traditional, clamp, clamp-box, specular, "
+           "specular-clamp, svgf, asvgf, paper, "
            "paper-adaptive, reliable, but it is \"magic\""))
       << text;
   EXPECT_EQ(replay({"--preset", "x"}), 2);

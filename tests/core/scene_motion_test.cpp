@@ -204,5 +204,50 @@ TEST(SceneMotion, MotionIsPreciseFarFromTheWorldsOrigin) {
   }
 }
 
+// What prev_pixel leads back, next_pixel leads on.
+TEST(SceneMotion, NextPixelIsWhereAPointOfThePreviousFrameIsNow) {
+  test::Random random(8);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Camera before = test::perspective_camera(kWidth, kHeight, random.in_box(1));
+    const Camera now = test::perspective_camera(kWidth, kHeight, random.in_box(1));
+    const glm::dmat4 t0 = test::random_rigid(random, 3, 2);
+    const glm::dmat4 t1 = test::random_rigid(random, 0.1, 0.2) * t0;
+    SceneMotion scene;
+    advance(scene, frame_of(before, {{9, t0}}));
+    advance(scene, frame_of(now, {{9, t1}}));
+    const glm::dvec3 world = glm::dvec3(0, 0, -6) + random.in_box(1);
+    const glm::vec3 relative(world - scene.previous_view().origin);
+    const auto moved = project(scene.object(scene.slot_of(9)).next_pixel, relative);
+    const glm::dvec2 expected = pixel_of(now, carried(t1, t0, world));
+    EXPECT_NEAR(moved.x, expected.x, 2e-3);
+    EXPECT_NEAR(moved.y, expected.y, 2e-3);
+    const auto still = project(scene.object(0).next_pixel, relative);
+    const glm::dvec2 expected_still = pixel_of(now, world);
+    EXPECT_NEAR(still.x, expected_still.x, 2e-3);
+    EXPECT_NEAR(still.y, expected_still.y, 2e-3);
+  }
+}
+
+TEST(SceneMotion, IsAtRestOnlyIfTheLightsAreToo) {
+  const std::vector<Light> lights{{5, LightShape::kPoint, 0, 0, 0}};
+  SceneMotion scene;
+  const auto send = [&](double object, double light, double camera) {
+    Frame frame = frame_of(test::perspective_camera(kWidth, kHeight, {camera, 0, 0}),
+                           {{1, glm::translate(glm::dmat4(1), {object, 0, 0})}});
+    frame.lights[5] = glm::translate(glm::dmat4(1), {0, light, 0});
+    scene.advance(frame, kWidth, kHeight, lights);
+    return scene.at_rest();
+  };
+  EXPECT_FALSE(send(1, 1, 0)) << "nothing is known of the frame before the first";
+  EXPECT_TRUE(send(1, 1, 0));
+  EXPECT_FALSE(send(1, 2, 0)) << "the light moves";
+  EXPECT_TRUE(scene.geometry_at_rest());
+  EXPECT_TRUE(send(1, 2, 0));
+  EXPECT_FALSE(send(2, 2, 0)) << "the object moves";
+  EXPECT_TRUE(send(2, 2, 0));
+  EXPECT_FALSE(send(2, 2, 1)) << "the camera moves";
+  EXPECT_TRUE(send(2, 2, 1));
+}
+
 }  // namespace
 }  // namespace holdfast

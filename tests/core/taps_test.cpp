@@ -164,5 +164,31 @@ TEST(Taps, NeverReadOutsideTheImage) {
   }
 }
 
+TEST(Taps, OfASimilarSurfaceIgnoreTheIdButNotTheForeignOne) {
+  Guides guides = small_wall();
+  guides.id[0].at(2, 2) = 7;
+  guides.id[0].at(3, 2) = 8;
+  const Receiver receiver = receiver_of(guides);
+  const Taps taps = find_similar_taps(guides, 3.0f, 3.0f, receiver, 7);
+  EXPECT_EQ(weight_at(guides, taps, 2, 2), 0.0f) << "the foreign id";
+  EXPECT_NEAR(weight_at(guides, taps, 3, 2), 1.0f / 3, 1e-6f) << "another id";
+  EXPECT_NEAR(weight_at(guides, taps, 2, 3), 1.0f / 3, 1e-6f);
+  const Taps own = find_similar_taps(guides, 3.0f, 3.0f, {receiver.point, receiver.normal, 7}, 7);
+  EXPECT_NEAR(weight_at(guides, own, 2, 2), 0.25f, 1e-6f) << "foreign, but the receiver's own";
+}
+
+TEST(Taps, OfASimilarSurfaceKeepToItsPlaneNormalAndTheImage) {
+  Guides guides = small_wall();
+  test::set_pixel(guides, 2, 2, 20.0f, {0, 0, 1}, 3);
+  test::set_pixel(guides, 3, 2, 5.0f, glm::normalize(glm::vec3(1, 0, 1)), 3);
+  test::set_pixel(guides, 2, 3, 0.0f, glm::vec3(0), 3);
+  const Receiver receiver = receiver_of(guides);
+  EXPECT_EQ(weight_at(guides, find_similar_taps(guides, 3.0f, 3.0f, receiver, 9), 3, 3), 1.0f);
+  for (const float bad : {-2.0f, 2.0f + kWidth, test::kInf, test::kNaN})
+    EXPECT_FALSE(find_similar_taps(guides, bad, 2.5f, receiver, 9).any()) << bad;
+  const Taps corner = find_similar_taps(guides, 0.1f, 0.1f, receiver, 9);
+  EXPECT_NEAR(weight_at(guides, corner, 0, 0), 1.0f, 1e-6f);
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -107,5 +107,38 @@ TEST(ViewGeometry, SingularOrNonFiniteCamerasAreRejectedByName) {
   test::expect_input_error([&] { make(bad); }, "camera clipFromView", "finite", "inf");
 }
 
+TEST(ViewGeometry, DirectionsProjectToTheLimitOfPointsFarAlongThem) {
+  for (const Camera& camera : {cameras()[0], cameras()[1]}) {
+    const ViewGeometry view(camera, kWidth, kHeight);
+    test::Random random(4);
+    for (int k = 0; k < 100; ++k) {
+      const glm::dvec3 along =
+          view.rays.position(random.uniform(0, kWidth), random.uniform(0, kHeight), 1.0);
+      const auto direction = project(view.pixel_from_relative, glm::dvec4(along, 0));
+      const auto far = project(view.pixel_from_relative, 1e9 * along + random.in_box(1));
+      ASSERT_TRUE(direction.in_front);
+      EXPECT_NEAR(direction.x, far.x, 1e-5);
+      EXPECT_NEAR(direction.y, far.y, 1e-5);
+      const auto back = project(view.pixel_from_relative, glm::dvec4(-along, 0));
+      EXPECT_FALSE(back.in_front);
+      EXPECT_EQ(back.x, 0.0);
+    }
+  }
+}
+
+TEST(ViewGeometry, WhatIsBehindOrBeyondAllPixelsProjectsNowhere) {
+  const ViewGeometry view(test::perspective_camera(kWidth, kHeight), kWidth, kHeight);
+  const glm::mat4 pixel(view.pixel_from_relative);
+  for (const glm::vec4 bad :
+       {glm::vec4(0, 0, 1, 1), glm::vec4(0, 0, 0, 1), glm::vec4(1e30f, 0, -1e-3f, 1),
+        glm::vec4(1, 0, -1e-12f, 0), glm::vec4(test::kNaN, 0, -1, 1),
+        glm::vec4(test::kInf, 0, -1, 1), glm::vec4(3e38f, 3e38f, -3e38f, 1) * 10.0f}) {
+    const auto point = project(pixel, bad);
+    EXPECT_FALSE(point.in_front) << bad.x << ' ' << bad.z;
+    EXPECT_EQ(point.x, 0.0f);
+    EXPECT_EQ(point.y, 0.0f);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast
