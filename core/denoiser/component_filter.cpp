@@ -46,6 +46,16 @@ const Channels<float>& sharpened_footprint(int height, Scratch& s) {
   return out;
 }
 
+/// Samples corrected by cones may be negative, and so may what little is left of few.
+void keep_positive(Plane& radiance) {
+  for_each_row(radiance.height(), [&](int y) {
+    for (int c = 0; c < radiance.channels(); ++c) {
+      float* row = radiance.channel(c).row(y);
+      for (int x = 0; x < radiance.width(); ++x) row[x] = std::max(row[x], 0.0f);
+    }
+  });
+}
+
 /// A history that starts has met no later frame: without this, what was left here before a cut
 /// would count as a difference to it.
 void clear_residual(ComponentHistory& history) {
@@ -91,6 +101,7 @@ ComponentFilter::ComponentFilter(const Plan::Entry& entry, const Recipe& recipe,
   const auto extras = recipe.svgf_filter ? HistoryExtras::kMoments
                       : residual         ? HistoryExtras::kResidual
                                          : HistoryExtras::kNone;
+  if (entry.cones) cones_ = ConeHistory(width, height, recipe.indirect_basis);
   for (auto& history : history_) history = ComponentHistory(width, height, channels_, extras);
 }
 
@@ -99,11 +110,12 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   std::optional<ShadowTracer> tracer;
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
+  if (input.directions != nullptr) correct_by_cones(input, scratch);
   measure(input, tracer ? &*tracer : nullptr, scratch);
   input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
 
   const bool follows = follows_effect(input);
-  if (follows) {
+  if (follows && !cones_) {
     trace_effect(input, tracer ? &*tracer : nullptr, scratch);
     input.timer.end("vectors", vectors_traffic());
   }
@@ -113,6 +125,17 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   filter(input, scratch, out);
   input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
   count_history(input.frames.now);
+}
+
+void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) {
+  const bool follows = follows_effect(input);
+  if (follows) {
+    trace_effect(input, nullptr, s);
+    input.timer.end("vectors", vectors_traffic());
+  }
+  cones_.correct(input.frames, input.surface, follows ? &s.effect : nullptr, *input.directions,
+                 recipe_.cones, s.window, s.noisy);
+  input.timer.end("cones", cones_traffic(recipe_));
 }
 
 bool ComponentFilter::follows_effect(const ComponentInput& input) const {
@@ -239,6 +262,7 @@ void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out
                     channels_ == 1 ? recipe_.visibility_filter : recipe_.radiance_filter, s.filter,
                     out);
   }
+  if (cones_) keep_positive(out);
 }
 
 void ComponentFilter::count_history(const Guides& now) {

@@ -2,6 +2,7 @@
 
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
+#include "core/history/cone_history.h"
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
 #include "core/history/glossy_history.h"
@@ -40,7 +41,8 @@ struct ComponentInput {
   StageTimer& timer;         ///< told of each stage that ends
   GlossyPlanes reflections;  ///< of a glossy component that follows them
   FrameKey key;
-  bool gradients = false;  ///< Scratch::gradients holds samples of the component
+  const Plane* directions = nullptr;  ///< of the samples of a component kept by cones
+  bool gradients = false;             ///< Scratch::gradients holds samples of the component
 };
 
 /// Filters one component in time and space, and keeps its history.
@@ -55,9 +57,12 @@ class ComponentFilter {
   Component component() const { return component_; }
   /// Mean of the samples behind the pixels on surfaces, after the last frame.
   double mean_history_frames() const { return mean_history_frames_; }
-  std::size_t history_bytes() const { return history_[0].data.bytes() + history_[1].data.bytes(); }
+  std::size_t history_bytes() const {
+    return history_[0].data.bytes() + history_[1].data.bytes() + cones_.bytes();
+  }
 
  private:
+  void correct_by_cones(const ComponentInput& input, Scratch& s);
   bool follows_effect(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
@@ -69,6 +74,7 @@ class ComponentFilter {
   bool has_footprint_, follows_effect_;
   Recipe recipe_;
   int channels_;
+  ConeHistory cones_;  ///< empty unless the plan keeps cones
   ComponentHistory history_[2];
   int now_ = 0;  ///< index of the history that the current frame writes
   std::vector<double> row_samples_, row_pixels_;

@@ -131,6 +131,7 @@ class Denoiser::Impl {
                         &frame.planes.at(PlaneId::of_light(PlaneKind::kLightSample, light)),
                         frame.planes.find(PlaneId::of_light(PlaneKind::kBlockerId, light))};
     }
+    if (entry.cones) input.directions = frame.planes.find({PlaneKind::kIndirectDirection, {}});
     if (entry.component.kind == ComponentKind::kGlossy &&
         (entry.has_footprint || entry.follows_effect))
       input.reflections = {&frame.planes.at({PlaneKind::kGlossyDirection, {}}),

@@ -100,7 +100,9 @@ Plan Plan::make(const DenoiserConfig& config) {
       plan.components.push_back({{ComponentKind::kGlossy, 0}, plan.roughness, follows});
     } else if (id.kind == PlaneKind::kIndirect) {
       const bool follows = recipe.indirect != DisocclusionVectors::kNone;
-      plan.components.push_back({{ComponentKind::kIndirect, 0}, false, follows});
+      const bool cones = plan.history && recipe.indirect_basis != RadianceBasis::kIrradiance &&
+                         has(config, {PlaneKind::kIndirectDirection, {}});
+      plan.components.push_back({{ComponentKind::kIndirect, 0}, false, follows, cones});
       plan.motion = follows && has(config, {PlaneKind::kMotion, {}});
     }
   }
@@ -131,6 +133,11 @@ const char* vectors_of(const Plan::Entry& entry) {
   return "";
 }
 
+const char* basis_of(RadianceBasis basis) {
+  return basis == RadianceBasis::kConesColour ? "six cones of colour"
+                                              : "six cones of luminance and one chroma";
+}
+
 const char* blending_of(const Recipe& recipe) {
   if (recipe.blending == Blending::kExpectedError) return "blended by expected error";
   switch (recipe.accumulation.rectification) {
@@ -157,6 +164,8 @@ std::string Plan::text() const {
     if (history)
       text +=
           name + ": history along " + vectors_of(entry) + " vectors, " + blending_of(recipe) + "\n";
+    if (entry.cones)
+      text += name + ": incident radiance by " + basis_of(recipe.indirect_basis) + "\n";
     if (recipe.gradient_levels > 0)
       text += name + (entry.gradients ? ": history replaced sooner by gradient samples\n"
                                       : ": no gradient samples, history at its fixed pace\n");

@@ -17,6 +17,8 @@ struct Plan {
     bool has_footprint = false;   ///< samples say how smooth it is: blocker planes, or glossy hits
                                   ///< with roughness
     bool follows_effect = false;  ///< by a vector of its own, besides the surface's
+    bool cones = false;           ///< kept by cones: the recipe asks for them and frames bring
+                                  ///< directions
     bool gradients = false;       ///< the recipe asks for gradient samples and frames bring them
   };
   Recipe recipe;

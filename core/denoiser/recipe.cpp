@@ -23,6 +23,7 @@ Recipe make_reliable() {
   reliable.shadow = ShadowVectors::kBorrowed;
   reliable.glossy = GlossyVectors::kRelative;
   reliable.indirect = DisocclusionVectors::kDual;
+  reliable.indirect_basis = RadianceBasis::kConesLuminance;
   return reliable;
 }
 
@@ -36,6 +37,7 @@ std::vector<Recipe> make_ablated() {
   without("shadow-vectors").shadow = ShadowVectors::kNone;
   without("reflection-vectors").glossy = GlossyVectors::kNone;
   without("dual-vectors").indirect = DisocclusionVectors::kNone;
+  without("cones").indirect_basis = RadianceBasis::kIrradiance;
   Recipe& residual = without("lasting-difference");
   residual.glossy_blend.residual_beta = residual.indirect_blend.residual_beta = 1.0f;
   Recipe& rest = without("trust-at-rest");
@@ -73,6 +75,7 @@ std::vector<Recipe> make_recipes() {
   paper.shadow = ShadowVectors::kPaper;
   paper.glossy = GlossyVectors::kStochastic;
   paper.indirect = DisocclusionVectors::kDual;
+  paper.indirect_basis = RadianceBasis::kConesLuminance;
   paper.accumulation.rectification = Rectification::kClampFallback;
   Recipe paper_adaptive = paper;
   paper_adaptive.name = "paper-adaptive";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/history/accumulate.h"
+#include "core/history/cone_history.h"
 #include "core/history/expected_error.h"
 #include "core/history/radiance_blend.h"
 #include "core/spatial/adaptive_filter.h"
@@ -38,9 +39,11 @@ struct Recipe {
   ShadowVectors shadow = ShadowVectors::kNone;
   GlossyVectors glossy = GlossyVectors::kNone;
   DisocclusionVectors indirect = DisocclusionVectors::kNone;
-  AccumulationRule accumulation;  ///< of kExponential
-  int gradient_levels = 0;        ///< of the filter of gradient samples, which say where to replace
-                                  ///< history sooner; 0: does not use them
+  RadianceBasis indirect_basis = RadianceBasis::kIrradiance;  ///< where directions are sent
+  ConeRule cones;                                             ///< of that basis, if of cones
+  AccumulationRule accumulation;                              ///< of kExponential
+  int gradient_levels = 0;  ///< of the filter of gradient samples, which say where to replace
+                            ///< history sooner; 0: does not use them
   ExpectedErrorRule visibility_blend;  ///< of kExpectedError
   RadianceBlendRule glossy_blend;
   RadianceBlendRule indirect_blend;

@@ -18,6 +18,12 @@ inline int statistics_traffic(int channels, bool footprint) {
          2 * pass_traffic(footprint ? 7 : 2, false, false) + (footprint ? 10 : 3);
 }
 
+/// Directions, guides, sample twice; cones gathered and updated; their passes.
+inline int cones_traffic(const Recipe& recipe) {
+  const int passes = recipe.indirect_basis == RadianceBasis::kConesColour ? 4 : 2;
+  return 3 + 8 + 6 + passes * (2 * 7 + pass_traffic(7, false, false));
+}
+
 /// Both frames' guides and ids, blockers, the field's means; taps, motion and trust.
 inline int vectors_traffic() { return 5 + 5 + 2 + 3 + 5 + 3; }
 

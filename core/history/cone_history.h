@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/history/effect_history.h"
+#include "core/history/frame_pair.h"
+#include "core/history/surface_history.h"
+#include "core/radiance/cones.h"
+#include "core/spatial/window.h"
+
+namespace holdfast {
+
+/// Constants of ConeHistory. All ours; tuned on occluder and static.
+struct ConeRule {
+  float most_samples = 8.0f;    ///< that a cone remembers; older ones fade as new ones come
+  float prior_samples = 0.03f;  ///< of the mean of all cones, which one without samples leans on
+};
+
+/// Incident radiance of every pixel by cone, from frame to frame; what it is good for is to take
+/// out of a sample what is only due to where it was drawn. A sample of radiance x in cone k, its
+/// cones' radiances L known from frames before, becomes
+///   x' = x - (L_k - sum_j W_j L_j),   W_j = cone_weight(j)
+/// whose mean is that of x whatever L is, since cone k comes up with probability W_k; but it no
+/// longer varies with k where L is right. L is a mean over the cone's samples in time (a cone
+/// without a new one keeps its own) and, 3x3 pixels a frame, in space. Once means in time and space
+/// are taken of x', each holds sum_j W_j L_j in place of the luck of its samples' directions:
+/// irradiance by cones, with what cones cannot tell apart left in (a control variate; ours).
+class ConeHistory {
+ public:
+  ConeHistory() = default;
+  /// `basis`: of cones.
+  ConeHistory(int width, int height, RadianceBasis basis);
+
+  explicit operator bool() const { return static_cast<bool>(kept_); }
+  std::size_t bytes() const { return kept_.bytes() + updated_.bytes(); }
+
+  /// Replaces the samples `noisy` (R, G, B) by x', which may be negative, and learns from them.
+  /// `directions`: of the samples, world space; a pixel where that is (0,0,0), not finite or below
+  /// the surface keeps its sample and its cones. `surface`, `effect`: where each pixel's radiance
+  /// was one frame ago, `effect` where `surface` has no taps; either may be null, and without
+  /// `surface` nothing is known.
+  ///   reads guides, taps, directions | writes noisy | halo 1 px
+  void correct(const FramePair& frames, const SurfaceHistory* surface, const EffectHistory* effect,
+               const Plane& directions, const ConeRule& rule, WindowScratch& window,
+               Channels<float>& noisy);
+
+ private:
+  struct Cones;
+  void recall(const Taps* taps, int count, int x0, int y);
+  Cones load(int x, int y) const;
+  void store(const Cones& cones, int k, int x, int y);
+  void correct_pixel(const FramePair& frames, const Taps& taps, const Plane& directions,
+                     const ConeRule& rule, int x, int y, Channels<float>& noisy);
+  void spread_out(const Guides& guides, WindowScratch& window);
+
+  int colours_ = 1;  ///< of a cone: luminance, or R, G, B
+  /// Channels, in groups that one filter pass takes: sums of radiance by colour and cone, samples
+  /// by cone; with luminance alone then R and B, weighed like the sum of luminance.
+  Channels<float> kept_, updated_;
+};
+
+}  // namespace holdfast
