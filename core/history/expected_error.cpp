@@ -10,6 +10,9 @@
 namespace holdfast {
 namespace {
 
+// Candidates: values, then samples.
+constexpr int kSurface = 0, kShadow = 1, kSamples = 2;
+
 /// What a candidate promises at one pixel.
 struct Estimate {
   float error = 0;       ///< expected squared error, in units in which a sample's is its variance
@@ -35,29 +38,22 @@ float threshold_of(float slide_px, const ExpectedErrorRule& rule) {
          rule.rest_threshold * exp_nonpositive(-slide_px / rule.rest_px);
 }
 
-/// The candidates of a pixel: for one channel the surface's and the shadow's histories, for three
-/// the surface's alone.
+/// The candidates of every pixel: value and samples of the surface's history, then of the shadow's.
 void gather_candidates(const Guides& guides, const Channels<float>& noisy,
                        const HistorySources& sources, const ComponentHistory& before,
                        BlendScratch& s) {
-  const int channels = before.channels;
   for_each_row(guides.view.height, [&](int y) {
     for (int x = 0; x < guides.view.width; ++x) {
-      const auto take = [&](const Taps& taps, int channel, int value_slot, int samples_slot) {
+      const auto take = [&](const Taps& taps, int slot) {
         const bool any = taps.any();
-        const float current = noisy[channel].at(x, y);
-        const float value = any ? gather(before.data[channel], taps) : current;
-        s.candidates[value_slot].at(x, y) = value;
-        s.differences[value_slot].at(x, y) = value - current;
-        s.candidates[samples_slot].at(x, y) = any ? gather(before.samples(), taps) : 0.0f;
+        const float current = noisy[0].at(x, y);
+        const float value = any ? gather(before.data[0], taps) : current;
+        s.candidates[slot].at(x, y) = value;
+        s.differences[slot].at(x, y) = value - current;
+        s.candidates[kSamples + slot].at(x, y) = any ? gather(before.samples(), taps) : 0.0f;
       };
-      const Taps& surface = sources.surface->taps[0].at(x, y);
-      if (channels == 3) {
-        for (int c = 0; c < 3; ++c) take(surface, c, c, 3);
-      } else {
-        take(surface, 0, 0, 2);
-        take(sources.effect != nullptr ? sources.effect->taps[0].at(x, y) : Taps{}, 0, 1, 3);
-      }
+      take(sources.surface->taps[0].at(x, y), kSurface);
+      take(sources.effect != nullptr ? sources.effect->taps[0].at(x, y) : Taps{}, kShadow);
     }
   });
 }
@@ -73,31 +69,24 @@ struct Blend {
   Channels<float>* debug;
 
   void row(int y) const {
-    const bool radiance = now.channels == 3;
     const float* variance = sample_variance.row(y);
     const float* spread = window_spread.row(y);
-    const float* bias[3] = {s.bias[0].row(y), s.bias[1].row(y), s.bias[2].row(y)};
-    const float* candidates[4] = {s.candidates[0].row(y), s.candidates[1].row(y),
-                                  s.candidates[2].row(y), s.candidates[3].row(y)};
-    float* samples_out = now.samples().row(y);
+    const float* bias[2] = {s.bias[kSurface].row(y), s.bias[kShadow].row(y)};
+    const float* samples_of[2] = {s.candidates[kSamples + kSurface].row(y),
+                                  s.candidates[kSamples + kShadow].row(y)};
     for (int x = 0; x < noisy.width(); ++x) {
-      int slot = 0;  // of the chosen candidate's first value
-      Estimate chosen;
-      if (radiance) {
-        chosen = estimate(candidates[3][x], luminance(bias[0][x], bias[1][x], bias[2][x]),
-                          variance[x], spread[x], rule.noise_threshold, rule);
-      } else {
-        const bool shadow_there = candidates[3][x] > 0.0f;
-        const float threshold =
-            shadow_there ? threshold_of(slide_px(x, y), rule) : rule.noise_threshold;
-        chosen = estimate(candidates[2][x], bias[0][x], variance[x], spread[x], threshold, rule);
-        const Estimate shadow =
-            estimate(candidates[3][x], bias[1][x], variance[x], spread[x], threshold, rule);
-        if (shadow_there &&
-            (chosen.samples <= 0.0f || shadow.error < rule.surface_advantage * chosen.error)) {
-          chosen = shadow;
-          slot = 1;
-        }
+      int slot = kSurface;
+      const bool shadow_there = samples_of[kShadow][x] > 0.0f;
+      const float threshold =
+          shadow_there ? threshold_of(slide_px(x, y), rule) : rule.noise_threshold;
+      Estimate chosen = estimate(samples_of[kSurface][x], bias[kSurface][x], variance[x], spread[x],
+                                 threshold, rule);
+      const Estimate shadow = estimate(samples_of[kShadow][x], bias[kShadow][x], variance[x],
+                                       spread[x], threshold, rule);
+      if (shadow_there &&
+          (chosen.samples <= 0.0f || shadow.error < rule.surface_advantage * chosen.error)) {
+        chosen = shadow;
+        slot = kShadow;
       }
       float alpha = 1.0f, samples = 1.0f;
       if (chosen.samples > 0.0f) {
@@ -105,15 +94,12 @@ struct Blend {
         alpha = 1.0f / (1.0f + k);
         samples = 1.0f / (square(alpha) + square(1.0f - alpha) / std::max(chosen.samples, k));
       }
-      for (int c = 0; c < now.channels; ++c) {
-        // A correction may not leave the range of the signal: radiance is not negative, visibility
-        // stays within 0..1 or what it was.
-        const float given = candidates[slot + c][x];
-        const float most = radiance ? given + std::abs(bias[slot + c][x]) : std::max(given, 1.0f);
-        const float h = std::clamp(given - chosen.correction * bias[slot + c][x], 0.0f, most);
-        now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * h;
-      }
-      samples_out[x] = std::clamp(samples, 1.0f, rule.most_samples);
+      // A correction may not leave the range of a visibility: 0..1, or what it was.
+      const float given = s.candidates[slot].at(x, y);
+      const float h =
+          std::clamp(given - chosen.correction * bias[slot][x], 0.0f, std::max(given, 1.0f));
+      now.data[0].at(x, y) = alpha * noisy[0].at(x, y) + (1.0f - alpha) * h;
+      now.samples().at(x, y) = std::clamp(samples, 1.0f, rule.most_samples);
       if (debug != nullptr) record(x, y, slot, chosen.samples, 1.0f - alpha);
     }
   }
@@ -126,7 +112,8 @@ struct Blend {
   }
 
   void record(int x, int y, int slot, float samples, float trust) const {
-    const Channels<float>& motion = slot == 1 ? sources.effect->motion : sources.surface->motion;
+    const Channels<float>& motion =
+        slot == kShadow ? sources.effect->motion : sources.surface->motion;
     (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
     (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
     (*debug)[kDebugFrames].at(x, y) = samples;
@@ -142,15 +129,12 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
                              const ExpectedErrorRule& rule, const ComponentHistory& before,
                              BlendScratch& s, WindowScratch& window, ComponentHistory& now,
                              Channels<float>* debug) {
-  const int channels = now.channels;
   gather_candidates(guides, noisy, sources, before, s);
-  const int count = channels == 3 ? 3 : 2;
-  ChannelView<const float> differences[3];
-  for (int c = 0; c < count; ++c) differences[c] = std::as_const(s.differences)[c];
-  s.activity.measure(guides, {differences, static_cast<std::size_t>(count)}, 1 + rule.window_step,
-                     0.0f, true);
+  const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
+                                                   std::as_const(s.differences)[kShadow]};
+  s.activity.measure(guides, differences, 1 + rule.window_step, 0.0f, true);
   const auto spread =
-      window_means(guides, s.differences, count, rule.window_step, window, s.bias, 0, &s.activity);
+      window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0, &s.activity);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { blend.row(y); });
 }

@@ -23,28 +23,28 @@ struct ExpectedErrorRule {
 
 /// Scratch of `blend_by_expected_error`.
 struct BlendScratch {
-  Channels<float> candidates;   ///< 4: values and samples of the candidates
-  Channels<float> differences;  ///< 3: candidate minus noisy
-  Channels<float> bias;         ///< 3: their local means
+  Channels<float> candidates;   ///< values of surface and shadow, then their samples
+  Channels<float> differences;  ///< candidate minus noisy
+  Channels<float> bias;         ///< their local means
   ActivityMap activity;         ///< of the differences
 
   BlendScratch() = default;
   BlendScratch(int width, int height)
       : candidates(width, height, 4),
-        differences(width, height, 3),
-        bias(width, height, 3),
+        differences(width, height, 2),
+        bias(width, height, 2),
         activity(width, height) {}
   std::size_t bytes() const { return candidates.bytes() + differences.bytes() + bias.bytes(); }
 };
 
-/// Blends the current frame with the candidate history of least expected error. For a candidate h
-/// with n samples, sample variance v, and local mean difference d = mean(h - noisy) over a window
+/// Blends a visibility with the candidate history of least expected error. For a candidate h with n
+/// samples, sample variance v, and local mean difference d = mean(h - noisy) over a window
 /// of m samples:
 ///   u   = (v + v/n) / m                    variance of d
 ///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls to noise_threshold
 ///                                          the faster a shadow slides over its surface
 ///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d,
-///                                          kept >= 0 and, for a visibility, <= max(h, 1)
+///                                          kept within 0..max(h, 1)
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 +
 /// (k/(1+k))^2/n' with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial
