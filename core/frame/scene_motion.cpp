@@ -45,8 +45,9 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
   view_ = next;
   view_matrix_ = frame.camera.view_from_world;
   clip_matrix_ = frame.camera.clip_from_view;
-  follow(object_tracks_, frame.objects, first);
-  follow(light_tracks_, frame.lights, first);
+  const bool new_object = follow(object_tracks_, frame.objects, first);
+  const bool new_light = follow(light_tracks_, frame.lights, first);
+  appeared_ = new_object || new_light;
   has_past_ = true;
 
   slot_ids_.clear();
@@ -63,7 +64,7 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
 void SceneMotion::reset() { *this = SceneMotion(); }
 
 bool SceneMotion::at_rest() const {
-  return geometry_at_rest_ &&
+  return geometry_at_rest_ && !appeared_ &&
          std::all_of(light_tracks_.begin(), light_tracks_.end(),
                      [](const auto& light) { return light.second.now == light.second.before; });
 }
@@ -83,15 +84,18 @@ SceneMotion::LightMotion SceneMotion::light(std::uint32_t light_id) const {
   return motion;
 }
 
-void SceneMotion::follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
+bool SceneMotion::follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
                          bool first) {
+  bool appeared = false;
   for (auto& [id, track] : tracks) track.before = track.now;
   for (const auto& [id, matrix] : moved) {
     const auto [it, is_new] = tracks.try_emplace(id, Track{matrix, matrix});
+    appeared |= is_new;
     if (is_new) continue;
     it->second.now = matrix;
     if (first) it->second.before = matrix;
   }
+  return appeared;
 }
 
 ObjectMotion<float> SceneMotion::compose(const Track& track) const {

@@ -45,7 +45,7 @@ class SceneMotion {
   int slot_count() const { return static_cast<int>(objects_.size()); }
   /// True when camera and all objects stand still.
   bool geometry_at_rest() const { return geometry_at_rest_; }
-  /// True when the lights stand still, too.
+  /// True when the lights stand still, too, and nothing has been placed for the first time.
   bool at_rest() const;
 
   /// Camera-relative world_from_light now and one frame ago. Identity at the world's origin if no
@@ -60,14 +60,15 @@ class SceneMotion {
   struct Track {
     glm::dmat4 now{1}, before{1};
   };
-  static void follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
+  /// Returns whether something was placed for the first time.
+  static bool follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
                      bool first);
   ObjectMotion<float> compose(const Track& track) const;
 
   std::map<std::uint32_t, Track> object_tracks_, light_tracks_;
   ViewGeometry view_, previous_view_;
   glm::dmat4 view_matrix_{1}, clip_matrix_{1};
-  bool camera_at_rest_ = false, geometry_at_rest_ = false, has_past_ = false;
+  bool camera_at_rest_ = false, geometry_at_rest_ = false, has_past_ = false, appeared_ = false;
   std::vector<std::uint32_t> slot_ids_;  ///< sorted; slot k + 1 belongs to slot_ids_[k]
   std::vector<ObjectMotion<float>> objects_;
 };

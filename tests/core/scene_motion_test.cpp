@@ -156,6 +156,24 @@ TEST(SceneMotion, BadFramesAreRejectedAndChangeNothing) {
   EXPECT_TRUE(scene.light(5).at_rest);
 }
 
+TEST(SceneMotion, ALightOrObjectThatAppearsIsNoRest) {
+  const std::vector<Light> lights{{5, LightShape::kPoint, 0, 0, 0}};
+  SceneMotion scene;
+  Frame frame = frame_of(test::perspective_camera(kWidth, kHeight, {0, 0, 0}));
+  const auto at_rest_after = [&] {
+    scene.advance(frame, kWidth, kHeight, lights);
+    return scene.at_rest();
+  };
+  at_rest_after();
+  EXPECT_TRUE(at_rest_after());
+  frame.lights[5] = glm::translate(glm::dmat4(1), {0, 2, 0});
+  EXPECT_FALSE(at_rest_after());
+  EXPECT_TRUE(at_rest_after());  // sent again, but there already
+  frame.objects[3] = glm::dmat4(1);
+  EXPECT_FALSE(at_rest_after());
+  EXPECT_TRUE(at_rest_after());
+}
+
 TEST(SceneMotion, LightsAreRelativeToTheCameraOfTheirFrame) {
   const std::vector<Light> lights{{5, LightShape::kPoint, 0, 0, 0}};
   SceneMotion scene;
