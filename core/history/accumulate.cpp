@@ -113,7 +113,7 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
       Taps taps;
       if (valid) {
         taps = by_effect ? sources.effect->taps[0].at(x, y) : sources.surface->taps[0].at(x, y);
-        trust = by_effect ? sources.effect->motion[2].at(x, y) : 1.0f;
+        trust = by_effect ? sources.effect->motion[kMotionTrust].at(x, y) : 1.0f;
         if (sources.antilag) trust *= 1.0f - sources.antilag.at(x / kStratum, y / kStratum);
         samples = gather(before.samples(), taps);
         for (int c = 0; c < channels; ++c)

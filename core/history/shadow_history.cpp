@@ -9,6 +9,7 @@
 namespace holdfast {
 namespace {
 
+constexpr float kNoBlockerSweep = 1e6f;  // where nothing blocks, a visibility is what is seen now
 constexpr float kLeastValid =
     1e-3f;  // share of blocked samples nearby below which none is borrowed
 
@@ -66,6 +67,7 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
 /// Writes the history of pixel (x, y), whose shadow was at lane i of `found`.
 void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int i, int x, int y,
           EffectHistory& out) {
+  out.motion[kMotionSweep].at(x, y) = found.sweep[i];
   if (found.found[i] == 0.0f) return;
   const Receiver receiver{{found.point[0][i], found.point[1][i], found.point[2][i]},
                           {found.normal[0][i], found.normal[1][i], found.normal[2][i]},
@@ -74,10 +76,10 @@ void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, 
   const Taps taps = paper ? find_taps_on_any_surface(frames.previous, found.x[i], found.y[i])
                           : find_taps(frames.previous, found.x[i], found.y[i], receiver);
   out.taps[0].at(x, y) = taps;
-  out.motion[0].at(x, y) = found.x[i] - (static_cast<float>(x) + 0.5f);
-  out.motion[1].at(x, y) = found.y[i] - (static_cast<float>(y) + 0.5f);
+  out.motion[kMotionX].at(x, y) = found.x[i] - (static_cast<float>(x) + 0.5f);
+  out.motion[kMotionY].at(x, y) = found.y[i] - (static_cast<float>(y) + 0.5f);
   if (taps.any())
-    out.motion[2].at(x, y) =
+    out.motion[kMotionTrust].at(x, y) =
         paper ? falloff_at(frames.previous, receiver, found.x[i], found.y[i]) : 1.0f;
 }
 
@@ -93,7 +95,9 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
-      for (int c = 0; c < 3; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
+      for (int c = 0; c < kMotionChannels; ++c)
+        std::fill_n(out.motion[c].row(y) + x, pixels.count,
+                    c == kMotionSweep ? kNoBlockerSweep : 0.0f);
       if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
                   own_ratio.row(y) + x, lanes))
         continue;
