@@ -18,7 +18,8 @@ struct CaseSetup {
   scenes::Scene scene;
   Component component;
   std::optional<double> roughness = std::nullopt;
-  int half_spp = 36;  ///< samples of each half of a reference
+  int half_spp = 36;      ///< samples of each half of a reference
+  int effect_radius = 0;  ///< px; of `moving_effect`
   double speed = 1;
   std::int64_t first_frame = 12;
 };
@@ -36,7 +37,10 @@ std::vector<CaseSetup> case_setups(bool quick) {
                        .scene = scenes::roughness_scene(roughness, camera_moves),
                        .component = {ComponentKind::kGlossy, 0},
                        .roughness = roughness,
-                       .half_spp = quick ? 9 : 25});
+                       .half_spp = roughness == 0 ? 1
+                                   : quick        ? 16
+                                                  : 36,
+                       .effect_radius = roughness < 0.1 ? 0 : 2});
   for (const char* name : {"fence", "cylinder"})
     cases.push_back({.name = name,
                      .scene = scenes::builtin_scene(name),
@@ -103,25 +107,30 @@ class CaseRenderer {
 struct Followed {
   std::vector<std::vector<Channels<Taps>>> taps;
   measure::Mask region;
+  Plane previous_ids, ids;
 };
+
+Plane ids_of(Frame& frame) { return std::move(*frame.planes.find({PlaneKind::kObjectId, {}})); }
 
 Followed follow(const CaseSetup& setup, const CaseRenderer& renderer, std::int64_t index,
                 int draws) {
   const auto vectors = measure::vectors_of(setup.component.kind);
   const std::vector<Light> lights = renderer.lights();
-  const Frame before = renderer.frame(index - 1, 0, true);
+  Frame before = renderer.frame(index - 1, 0, true);
   Followed out;
   for (int draw = 0; draw < draws; ++draw) {
-    const Frame now = renderer.frame(index, draw, false);
+    Frame now = renderer.frame(index, draw, false);
     const measure::VectorTracer tracer(before, now, lights);
     auto& taps = out.taps.emplace_back();
     for (const measure::FollowedVector vector : vectors)
       taps.push_back(tracer.trace(vector, setup.component, static_cast<std::uint64_t>(draw)));
-    if (draw == 0)
-      out.region = setup.component.kind == ComponentKind::kIndirect
-                       ? tracer.hidden()
-                       : measure::surface_mask(now.planes.at({PlaneKind::kDepth, {}}));
+    if (draw > 0) continue;
+    out.region = setup.component.kind == ComponentKind::kIndirect
+                     ? tracer.hidden()
+                     : measure::surface_mask(now.planes.at({PlaneKind::kDepth, {}}));
+    out.ids = ids_of(now);
   }
+  out.previous_ids = ids_of(before);
   return out;
 }
 
@@ -148,7 +157,9 @@ measure::VectorCase study_case(const CaseSetup& setup, const VectorStudyOptions&
     const std::int64_t index = setup.first_frame + i;
     ReferenceHalves now = renderer.reference(index);
     const Followed followed = follow(setup, renderer, index, draws);
-    const measure::FollowedPair pair{previous, now, followed.region, followed.taps};
+    const measure::Mask effect = measure::moving_effect(
+        previous, now, followed.previous_ids, followed.ids, setup.effect_radius, followed.region);
+    const measure::FollowedPair pair{previous, now, followed.region, effect, followed.taps};
     meter.add(pair);
     if (i == pairs) write_sheet(setup, options, pair);
     previous = std::move(now);

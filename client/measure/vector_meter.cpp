@@ -8,6 +8,32 @@
 namespace holdfast::measure {
 namespace {
 
+Image judged(const Plane& plane, Measure measure) {
+  return judged_image(clean_image(plane).image, measure);
+}
+
+/// The mean of the neighbours of (x, y) within `radius` that have its id.
+float mean_around(ChannelView<const float> values, ChannelView<const std::uint32_t> ids, int x,
+                  int y, int radius) {
+  float sum = 0, count = 0;
+  for (int v = std::max(0, y - radius); v <= std::min(values.height - 1, y + radius); ++v)
+    for (int u = std::max(0, x - radius); u <= std::min(values.width - 1, x + radius); ++u) {
+      if (ids.at(u, v) != ids.at(x, y)) continue;
+      sum += values.at(u, v);
+      count += 1;
+    }
+  return sum / count;
+}
+
+Plane smoothed(const Plane& plane, const Plane& ids, int radius) {
+  Plane out(plane.id(), plane.width(), plane.height());
+  for (int c = 0; c < plane.channels(); ++c)
+    for (int y = 0; y < plane.height(); ++y)
+      for (int x = 0; x < plane.width(); ++x)
+        out.channel(c).at(x, y) = mean_around(plane.channel(c), ids.ids(), x, y, radius);
+  return out;
+}
+
 Plane empty_like(const Plane& plane) { return Plane(plane.id(), plane.width(), plane.height()); }
 
 Mask found_in(const Channels<Taps>& taps) {
@@ -47,6 +73,13 @@ Plane mean_of(const ReferenceHalves& halves) {
   return out;
 }
 
+Mask moving_effect(const ReferenceHalves& previous, const ReferenceHalves& now,
+                   const Plane& previous_ids, const Plane& ids, int radius, const Mask& region) {
+  const Measure measure = measure_of(now[0].id().kind);
+  return effect_mask(judged(smoothed(mean_of(now), ids, radius), measure),
+                     judged(smoothed(mean_of(previous), previous_ids, radius), measure), region);
+}
+
 void VectorMeter::Mean::add(const std::vector<double>& values, const Mask& mask, const Mask& also) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!mask[i] || !also[i]) continue;
@@ -68,8 +101,7 @@ std::vector<double> VectorMeter::product_of_errors(const ReferenceHalves& warped
                                                    const ReferenceHalves& now) const {
   std::array<Image, 2> error;
   for (std::size_t h = 0; h < 2; ++h)
-    error[h] = difference(judged_image(clean_image(warped[h]).image, measure_),
-                          judged_image(clean_image(now[h]).image, measure_));
+    error[h] = difference(judged(warped[h], measure_), judged(now[h], measure_));
   std::vector<double> out(error[0].pixels());
   for (int c = 0; c < error[0].channels; ++c)
     for (std::size_t i = 0; i < out.size(); ++i)
@@ -79,13 +111,9 @@ std::vector<double> VectorMeter::product_of_errors(const ReferenceHalves& warped
 }
 
 void VectorMeter::start_pair(const FollowedPair& pair) {
-  const auto judged = [&](const Plane& plane) {
-    return judged_image(clean_image(plane).image, measure_);
-  };
   regions_[0].mask = pair.region;
-  regions_[1].mask =
-      effect_mask(judged(mean_of(pair.now)), judged(mean_of(pair.previous)), pair.region);
-  const Image noise = difference(judged(pair.now[0]), judged(pair.now[1]));
+  regions_[1].mask = pair.effect;
+  const Image noise = difference(judged(pair.now[0], measure_), judged(pair.now[1], measure_));
   std::vector<double> squared(noise.pixels());
   for (int c = 0; c < noise.channels; ++c)
     for (std::size_t i = 0; i < squared.size(); ++i) {

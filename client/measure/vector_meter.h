@@ -18,6 +18,7 @@ struct FollowedPair {
   const ReferenceHalves& previous;
   const ReferenceHalves& now;
   const Mask& region;  ///< pixels that may count
+  const Mask& effect;  ///< those of them where the effect moves
   /// taps[d][v]: vector v by the samples of draw d. All draws have the same vectors; the first is
   /// the fallback of the others.
   const std::vector<std::vector<Channels<Taps>>>& taps;
@@ -44,8 +45,6 @@ struct RegionFigures {
 class VectorMeter {
  public:
   VectorMeter(Measure measure, std::size_t vectors);
-  /// Adds a pair. The effect is where the mean of the halves has changed by more than
-  /// kEffectThreshold (effect_mask).
   void add(const FollowedPair& pair);
   RegionFigures figures(Region region) const;
 
@@ -76,6 +75,12 @@ class VectorMeter {
 
 /// The mean of both halves.
 Plane mean_of(const ReferenceHalves& halves);
+
+/// Where the effect of `now` moves: `effect_mask` of the mean of both halves, each pixel of it the
+/// mean of its (2 * radius + 1)^2 neighbours with the same id. Without smoothing, noise above
+/// kEffectThreshold would choose the pixels that it makes differ.
+Mask moving_effect(const ReferenceHalves& previous, const ReferenceHalves& now,
+                   const Plane& previous_ids, const Plane& ids, int radius, const Mask& region);
 
 /// Adds `share` times `from` to `to`, planes of one shape.
 void add_share(Plane& to, const Plane& from, float share);
