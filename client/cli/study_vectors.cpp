@@ -50,7 +50,7 @@ std::vector<CaseSetup> case_setups(bool quick) {
   cases.push_back({.name = "occluder",
                    .scene = scenes::builtin_scene("occluder"),
                    .component = {ComponentKind::kIndirect, 0},
-                   .half_spp = quick ? 9 : 64,
+                   .half_spp = quick ? 9 : 256,
                    .speed = 2});
   cases.back().scene.components = {false, false, true};
   return cases;
