@@ -32,15 +32,20 @@ constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-20f;
 
-/// The footprint of a window that must find what the filter's would blur: a third of its variance.
-const Channels<float>& sharpened_footprint(int height, Scratch& s) {
-  constexpr float kPrecision = 3.0f;
+// How narrow the window of the differences from history is, as a multiple of the precision of the
+// filter's footprint. That of reflections must find what the filter's would blur; that of shadows
+// leaves out what other penumbrae do. Ours, tuned on glossy-floor, and on fence and cylinder.
+constexpr float kVisibilityWindowPrecision = 0.15f;
+constexpr float kRadianceWindowPrecision = 3.0f;
+
+/// The footprint with `precision` times its precision.
+const Channels<float>& scaled_footprint(int height, float precision, Scratch& s) {
   Channels<float>& out = s.filter.footprint;  // free until the filter runs
   for_each_row(height, [&](int y) {
     for (int c = 0; c < 3; ++c) {
       const float* in = std::as_const(s.footprint)[c].row(y);
       float* to = out[c].row(y);
-      for (int x = 0; x < out.width(); ++x) to[x] = kPrecision * in[x];
+      for (int x = 0; x < out.width(); ++x) to[x] = precision * in[x];
     }
   });
   return out;
@@ -225,13 +230,16 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
   if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
-    if (channels_ == 1)
+    const Channels<float>* window = nullptr;
+    if (has_footprint_)
+      window = &scaled_footprint(
+          input.frames.now.view.height,
+          channels_ == 1 ? kVisibilityWindowPrecision : kRadianceWindowPrecision, s);
+    if (channels_ == 1) {
       blend_by_expected_error(input.frames.now, s.noisy, sources,
-                              std::as_const(s.means)[kSampleVariance], recipe_.visibility_blend,
-                              before, s.blend, s.window, now, debug);
-    else {
-      const Channels<float>* window = nullptr;
-      if (has_footprint_) window = &sharpened_footprint(input.frames.now.view.height, s);
+                              std::as_const(s.means)[kSampleVariance], window,
+                              recipe_.visibility_blend, before, s.blend, s.window, now, debug);
+    } else {
       blend_radiance(
           input.frames.now, s.noisy, sources, window,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,

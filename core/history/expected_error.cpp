@@ -130,15 +130,15 @@ struct Blend {
 void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
                              const HistorySources& sources,
                              ChannelView<const float> sample_variance,
-                             const ExpectedErrorRule& rule, const ComponentHistory& before,
-                             BlendScratch& s, WindowScratch& window, ComponentHistory& now,
-                             Channels<float>* debug) {
+                             const Channels<float>* footprint, const ExpectedErrorRule& rule,
+                             const ComponentHistory& before, BlendScratch& s, WindowScratch& window,
+                             ComponentHistory& now, Channels<float>* debug) {
   gather_candidates(guides, noisy, sources, before, s);
   const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
                                                    std::as_const(s.differences)[kShadow]};
   s.activity.measure(guides, differences, 1 + rule.window_step, 0.0f, true);
-  const auto spread =
-      window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0, &s.activity);
+  const auto spread = window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0,
+                                   &s.activity, footprint);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { blend.row(y); });
 }
