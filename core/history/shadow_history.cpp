@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
 #include "core/motion/shadow_motion.h"
 
@@ -63,22 +64,27 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
   return true;
 }
 
-/// Writes the history of pixel (x, y), whose shadow was at lane i of `found`.
-void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int i, int x, int y,
-          EffectHistory& out) {
-  if (found.found[i] == 0.0f) return;
-  const Receiver receiver{{found.point[0][i], found.point[1][i], found.point[2][i]},
-                          {found.normal[0][i], found.normal[1][i], found.normal[2][i]},
-                          frames.now.id[0].at(x, y)};
+/// Writes the history of the pixels from (x, y) on whose shadows are `found`.
+void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int x, int y,
+          int count, EffectHistory& out) {
   const bool paper = rule == ShadowRule::kPaper;
-  const Taps taps = paper ? find_taps_on_any_surface(frames.previous, found.x[i], found.y[i])
-                          : find_taps(frames.previous, found.x[i], found.y[i], receiver);
-  out.taps[0].at(x, y) = taps;
-  out.motion[0].at(x, y) = found.x[i] - (static_cast<float>(x) + 0.5f);
-  out.motion[1].at(x, y) = found.y[i] - (static_cast<float>(y) + 0.5f);
-  if (taps.any())
-    out.motion[2].at(x, y) =
-        paper ? falloff_at(frames.previous, receiver, found.x[i], found.y[i]) : 1.0f;
+  Taps taps[kFollowBlock];
+  const std::uint32_t* id = frames.now.id[0].row(y) + x;
+  const TapSearch search{frames.previous, found, id, count, taps};
+  if (paper)
+    find_block_taps_on_any_surface(search);
+  else
+    find_block_taps(search);
+  for (int i = 0; i < count; ++i) {
+    if (found.found[i] == 0.0f) continue;
+    float trust = 0;
+    if (taps[i].any())
+      trust =
+          paper ? falloff_at(frames.previous, receiver_of(found, i, id[i]), found.x[i], found.y[i])
+                : 1.0f;
+    out.set(x + i, y, taps[i], found.x[i] - (static_cast<float>(x + i) + 0.5f),
+            found.y[i] - (static_cast<float>(y) + 0.5f), trust);
+  }
 }
 
 }  // namespace
@@ -89,7 +95,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     Lanes lanes;
-    FollowedBlock found;
+    FollowedBlock found, followed{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
@@ -97,6 +103,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
       if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
                   own_ratio.row(y) + x, lanes))
         continue;
+      std::fill_n(followed.found, pixels.count, 0.0f);
       for (int i = 0; i < pixels.count; ++i) {
         if (!lanes.wanted[i]) continue;
         const int surface = lanes.surface[i], occluder = lanes.occluder[i];
@@ -107,9 +114,10 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
           if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
             continue;
           lanes.wanted[k] = 0;
-          take(frames, rule, found, k, x + k, y, out);
+          if (found.found[k] != 0.0f) copy_lane(found, k, followed);
         }
       }
+      take(frames, rule, followed, x, y, pixels.count, out);
     }
   });
 }

@@ -29,6 +29,17 @@ struct FollowedBlock {
   float normal[3][kFollowBlock];           ///< unit, previous frame
 };
 
+/// Copies lane i.
+inline void copy_lane(const FollowedBlock& from, int i, FollowedBlock& to) {
+  to.x[i] = from.x[i];
+  to.y[i] = from.y[i];
+  to.found[i] = from.found[i];
+  for (int axis = 0; axis < 3; ++axis) {
+    to.point[axis][i] = from.point[axis][i];
+    to.normal[axis][i] = from.normal[axis][i];
+  }
+}
+
 /// x_{i-1} = P_{i-1}(T_s^{-1} s_i) for pixels of one object.
 struct SurfaceFollow {
   const BlockPixels& pixels;
