@@ -29,7 +29,7 @@ void choose(const HistorySources& sources, Rectification rectification, int x, i
                     : sources.surface != nullptr ? sources.surface->taps[0].at(x + i, y)
                                                  : Taps{};
     const bool valid = by_effect || lanes.taps[i].any();
-    float trust = by_effect ? sources.effect->motion[2].at(x + i, y) : 1.0f;
+    float trust = by_effect ? sources.effect->motion[kMotionTrust].at(x + i, y) : 1.0f;
     if (sources.antilag) trust *= 1.0f - sources.antilag.at((x + i) / kStratum, y / kStratum);
     lanes.trust[i] = valid ? trust : 0.0f;
     const bool clamped = valid && clamps(rectification, by_effect);

@@ -6,19 +6,23 @@ namespace holdfast {
 
 /// Where each pixel's effect was one frame ago: the shadow of a light, a reflection, or, for a
 /// surface that was hidden, what stands in for it.
+enum EffectMotion { kMotionX, kMotionY, kMotionTrust, kMotionSweep, kMotionChannels };
+
 struct EffectHistory {
   Channels<Taps> taps;     ///< history taps along the effect's motion vector; may be none
-  Channels<float> motion;  ///< motion_px X and Y, then trust 0..1 (TRMV's falloff; else 1)
+  Channels<float> motion;  ///< motion_px X and Y, trust 0..1 (TRMV's falloff; else 1), and of
+                           ///< shadows how far the blocker moved before the light, in its widths
 
   EffectHistory() = default;
-  EffectHistory(int width, int height) : taps(width, height, 1), motion(width, height, 3) {}
+  EffectHistory(int width, int height)
+      : taps(width, height, 1), motion(width, height, kMotionChannels) {}
   std::size_t bytes() const { return taps.bytes() + motion.bytes(); }
 
   void set(int x, int y, const Taps& t, float motion_x, float motion_y, float trust) {
     taps[0].at(x, y) = t;
-    motion[0].at(x, y) = motion_x;
-    motion[1].at(x, y) = motion_y;
-    motion[2].at(x, y) = trust;
+    motion[kMotionX].at(x, y) = motion_x;
+    motion[kMotionY].at(x, y) = motion_y;
+    motion[kMotionTrust].at(x, y) = trust;
   }
 };
 

@@ -31,11 +31,11 @@ Estimate estimate(float samples, float difference, float variance, float window_
   return {own + rule.spatial_samples * left, share, samples};
 }
 
-/// The threshold where a shadow moves over its surface by `slide_px` pixels: at rest there is no
-/// reason to expect bias, so that only a large difference counts; the faster, the sooner.
-float threshold_of(float slide_px, const ExpectedErrorRule& rule) {
-  return rule.noise_threshold + rule.slow_threshold * exp_nonpositive(-slide_px / rule.slow_px) +
-         rule.rest_threshold * exp_nonpositive(-slide_px / rule.rest_px);
+/// The threshold where a shadow moves over its surface by `move` of its penumbra: at rest there is
+/// no reason to expect bias, so that only a large difference counts; the faster, the sooner.
+float threshold_of(float move, const ExpectedErrorRule& rule) {
+  return rule.noise_threshold + rule.slow_threshold * exp_nonpositive(-move / rule.slow_move) +
+         rule.rest_threshold * exp_nonpositive(-move / rule.rest_move);
 }
 
 /// The candidates of every pixel: value and samples of the surface's history, then of the shadow's.
@@ -78,7 +78,7 @@ struct Blend {
       int slot = kSurface;
       const bool shadow_there = samples_of[kShadow][x] > 0.0f;
       const float threshold =
-          shadow_there ? threshold_of(slide_px(x, y), rule) : rule.noise_threshold;
+          sources.effect != nullptr ? threshold_of(move(x, y), rule) : rule.noise_threshold;
       Estimate chosen = estimate(samples_of[kSurface][x], bias[kSurface][x], variance[x], spread[x],
                                  threshold, rule);
       const Estimate shadow = estimate(samples_of[kShadow][x], bias[kShadow][x], variance[x],
@@ -104,11 +104,15 @@ struct Blend {
     }
   }
 
-  /// Motion of the shadow over its surface at (x, y), pixels.
-  float slide_px(int x, int y) const {
+  /// Motion of the shadow over its surface at (x, y), in widths of the penumbra and a pixel: what a
+  /// visibility may change by in a frame.
+  float move(int x, int y) const {
     const Channels<float>&shadow = sources.effect->motion, &surface = sources.surface->motion;
-    return std::abs(shadow[0].at(x, y) - surface[0].at(x, y)) +
-           std::abs(shadow[1].at(x, y) - surface[1].at(x, y));
+    const float sweep = shadow[kMotionSweep].at(x, y);
+    if (!sources.effect->taps[0].at(x, y).any()) return sweep;
+    const float slide_px = std::abs(shadow[0].at(x, y) - surface[0].at(x, y)) +
+                           std::abs(shadow[1].at(x, y) - surface[1].at(x, y));
+    return sweep * slide_px / std::max(sweep + slide_px, 1e-9f);
   }
 
   void record(int x, int y, int slot, float samples, float trust) const {

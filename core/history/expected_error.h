@@ -9,10 +9,10 @@ namespace holdfast {
 struct ExpectedErrorRule {
   int window_step = 2;           ///< window of the bias estimate: 3 + 2 step pixels wide
   float noise_threshold = 0.4f;  ///< share of a window mean's variance that is not taken for bias
-  float slow_threshold = 6.0f;   ///< added where a shadow slides slowly over its surface ...
-  float slow_px = 3.0f;          ///< ... falling by 1/e with this motion over the surface, pixels
-  float rest_threshold = 20.0f;  ///< added where it does not slide at all ...
-  float rest_px = 0.05f;         ///< ... falling by 1/e with this motion (rounding, not sliding)
+  float slow_threshold = 6.0f;   ///< added where a shadow moves slowly over its surface ...
+  float slow_move = 0.05f;       ///< ... falling by 1/e with this much of a penumbra a frame
+  float rest_threshold = 20.0f;  ///< added where it does not move at all ...
+  float rest_move = 0.003f;      ///< ... falling by 1/e with this much (rounding, not sliding)
   float spatial_samples =
       40;  ///< samples that the spatial filter adds: it averages noise, not bias
   float surface_advantage =
@@ -42,7 +42,7 @@ struct BlendScratch {
 /// of m samples:
 ///   u   = (v + v/n) / m                    variance of d
 ///   b^2 = max(0, d^2 - threshold u)        squared bias; the threshold falls to noise_threshold
-///                                          the faster a shadow slides over its surface
+///                                          the more of its penumbra a shadow moves a frame
 ///   s   = b^2 / (b^2 + u)                  share of d that is worth subtracting: h' = h - s d,
 ///                                          kept within 0..max(h, 1)
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)

@@ -10,6 +10,7 @@
 namespace holdfast {
 namespace {
 
+constexpr float kNoBlockerSweep = 1e6f;  // where nothing blocks, a visibility is what is seen now
 constexpr float kLeastValid =
     1e-3f;  // share of blocked samples nearby below which none is borrowed
 
@@ -95,11 +96,13 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     Lanes lanes;
-    FollowedBlock found, followed{};
+    FollowedBlock found{}, followed{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
-      for (int c = 0; c < 3; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
+      for (int c = 0; c < kMotionChannels; ++c)
+        std::fill_n(out.motion[c].row(y) + x, pixels.count,
+                    c == kMotionSweep ? kNoBlockerSweep : 0.0f);
       if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
                   own_ratio.row(y) + x, lanes))
         continue;
@@ -114,6 +117,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
           if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
             continue;
           lanes.wanted[k] = 0;
+          out.motion[kMotionSweep].at(x + k, y) = found.sweep[k];
           if (found.found[k] != 0.0f) copy_lane(found, k, followed);
         }
       }

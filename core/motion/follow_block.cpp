@@ -6,6 +6,14 @@
 namespace holdfast {
 namespace {
 
+/// The vector whose product with a displacement counts it in widths of the half axis.
+HOLDFAST_INLINE Float3 per_width(const glm::vec3& half_axis) {
+  const float x = half_axis.x, y = half_axis.y, z = half_axis.z;
+  const float square_m = x * x + y * y + z * z;
+  const float scale = square_m > 0.0f ? 0.5f / square_m : 0.0f;
+  return {scale * x, scale * y, scale * z};
+}
+
 HOLDFAST_INLINE void surface_kernel_body(const SurfaceFollow& a) {
   const BlockPixels pixels = a.pixels;
   const Affine carry = affine_of(a.object.carry), rotate = affine_of(glm::mat4(a.object.rotate));
@@ -32,6 +40,9 @@ HOLDFAST_INLINE void shadow_kernel_body(const ShadowFollow& a) {
   const float* ratio = a.ratio;
   const float *lx = a.light[0], *ly = a.light[1], *lz = a.light[2], w = a.light_w;
   const float *mx = a.previous_light[0], *my = a.previous_light[1], *mz = a.previous_light[2];
+  const Float3 across_0 = per_width(a.previous_half_axes[0]),
+               across_1 = per_width(a.previous_half_axes[1]),
+               across_2 = per_width(a.previous_half_axes[2]);
   FollowedBlock& out = a.out;
 #pragma GCC ivdep
   for (int i = 0; i < pixels.count; ++i) {
@@ -44,7 +55,13 @@ HOLDFAST_INLINE void shadow_kernel_body(const ShadowFollow& a) {
     const Float3 blocker = carried(carry_blocker, blocker_now);
     store(out.point, i, surface);
     store(out.normal, i, normal);
-    // `shadow_previous_point` of shadow_motion.h.
+    // `shadow_sweep`, then `shadow_previous_point` of shadow_motion.h.
+    const float stretch = 1.0f / max_of(ratio[i], 1e-6f);
+    const Float3 moved{stretch * (blocker.x - surface.x) + w * surface.x - mx[i],
+                       stretch * (blocker.y - surface.y) + w * surface.y - my[i],
+                       stretch * (blocker.z - surface.z) + w * surface.z - mz[i]};
+    out.sweep[i] = __builtin_sqrtf(square(dot(moved, across_0)) + square(dot(moved, across_1)) +
+                                   square(dot(moved, across_2)));
     const Float3 towards{w * blocker.x - mx[i], w * blocker.y - my[i], w * blocker.z - mz[i]};
     const float descent = dot(towards, normal);
     const bool falls = descent < -1e-4f * __builtin_sqrtf(dot(towards, towards));

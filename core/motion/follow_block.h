@@ -27,6 +27,8 @@ struct FollowedBlock {
   float found[kFollowBlock];               ///< 1 where there is one, in front of the camera; else 0
   float point[3][kFollowBlock];            ///< relative to the previous camera, metres
   float normal[3][kFollowBlock];           ///< unit, previous frame
+  float sweep[kFollowBlock];  ///< shadows: how far the blocker moves before the light, in widths of
+                              ///< it
 };
 
 /// Copies lane i.
@@ -58,6 +60,7 @@ struct ShadowFollow {
   const float* ratio;
   const float *light[3], *previous_light[3];
   float light_w;
+  const glm::mat3& previous_half_axes;  ///< of the light, metres; columns of zero: no extent
   FollowedBlock& out;
 };
 void follow_shadow(const ShadowFollow& block) noexcept;

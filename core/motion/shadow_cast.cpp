@@ -14,17 +14,17 @@ struct Covariance {
 };
 
 /// Adds a half axis A of the light: it moves the shadow point by tau (-A + (A.n) t / (t.n)), where
-/// t = blocker - light and tau = receiver distance / |t|, both along the ray.
-HOLDFAST_INLINE void add_axis(const Projection& pixel, const Float3& axis, const Float3& point,
-                              const Float3& normal, const Float3& slide, float tau, float px,
-                              float py, float share, Covariance& sum) {
+/// t = blocker - light and tau = receiver distance / |t|, both along the ray. The move is projected
+/// by the derivative at the point: its end may well lie behind the camera.
+HOLDFAST_INLINE void add_axis(const Projection& pixel, const Float3& axis, const Float3& normal,
+                              const Float3& slide, float tau, float px, float py, float per_w,
+                              float share, Covariance& sum) {
   const float along = dot(axis, normal);
-  const Float3 moved{point.x + tau * (along * slide.x - axis.x),
-                     point.y + tau * (along * slide.y - axis.y),
-                     point.z + tau * (along * slide.z - axis.z)};
-  float x, y, found;
-  project_to(pixel, moved, true, x, y, found);
-  const float dx = found > 0.0f ? x - px : 0.0f, dy = found > 0.0f ? y - py : 0.0f;
+  const Float3 move{tau * (along * slide.x - axis.x), tau * (along * slide.y - axis.y),
+                    tau * (along * slide.z - axis.z)};
+  const float w = dot(pixel.w, move);
+  const float dx = (dot(pixel.rows.x, move) - px * w) * per_w;
+  const float dy = (dot(pixel.rows.y, move) - py * w) * per_w;
   sum.xx += share * dx * dx;
   sum.xy += share * dx * dy;
   sum.yy += share * dy * dy;
@@ -61,10 +61,12 @@ HOLDFAST_INLINE void cast_block(const ShadowCast& a) {
     const float tau = ratio / beyond, inverse = 1.0f / (valid ? facing : 1.0f);
     const Float3 slide{to_light.x * inverse, to_light.y * inverse, to_light.z * inverse};
     const float px = pixels.first_x + static_cast<float>(i);
+    const float w = dot(pixel.w, point) + pixel.w0;
+    const float per_w = 1.0f / (w > 0.0f ? w : 1.0f);
     Covariance sum{own, 0.0f, own};
-    add_axis(pixel, axis_0, point, normal, slide, tau, px, py, share, sum);
-    add_axis(pixel, axis_1, point, normal, slide, tau, px, py, share, sum);
-    if constexpr (kAxes > 2) add_axis(pixel, axis_2, point, normal, slide, tau, px, py, share, sum);
+    add_axis(pixel, axis_0, normal, slide, tau, px, py, per_w, share, sum);
+    add_axis(pixel, axis_1, normal, slide, tau, px, py, per_w, share, sum);
+    if constexpr (kAxes > 2) add_axis(pixel, axis_2, normal, slide, tau, px, py, per_w, share, sum);
     const float scale = 0.5f / max_of(sum.xx * sum.yy - sum.xy * sum.xy, 1e-12f);
     out_valid[i] = valid ? 1.0f : 0.0f;
     out_ratio[i] = valid ? ratio : 0.0f;

@@ -54,6 +54,8 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
   relative_from_light_ = glm::mat4(motion.relative_from_light);
   previous_relative_from_light_ = glm::mat4(motion.previous_relative_from_light);
   half_axes_ = glm::mat3(glm::dmat3(motion.relative_from_light) * light_half_axes(light));
+  previous_half_axes_ =
+      glm::mat3(glm::dmat3(motion.previous_relative_from_light) * light_half_axes(light));
   pixel_ = glm::mat4(now.view.pixel_from_relative);
   previous_pixel_ = glm::mat4(scene.previous_view().pixel_from_relative);
 }
@@ -145,6 +147,7 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
                            {light[0], light[1], light[2]},
                            {previous[0], previous[1], previous[2]},
                            centre.w,
+                           previous_half_axes_,
                            out});
 }
 

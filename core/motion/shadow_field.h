@@ -58,7 +58,7 @@ class ShadowTracer {
   ChannelView<const float> distance_, u_, v_;
   const Plane* id_;
   glm::mat4 relative_from_light_, previous_relative_from_light_;
-  glm::mat3 half_axes_;
+  glm::mat3 half_axes_, previous_half_axes_;
   glm::mat4 pixel_, previous_pixel_;
 };
 

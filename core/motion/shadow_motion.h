@@ -34,6 +34,25 @@ bool shadow_previous_point(const ShadowSample<T>& sample, glm::vec<3, T>& hit) {
   return true;
 }
 
+/// How far the shadow's blocker has moved before the light since the previous frame, seen from the
+/// surface, in widths of the light: what a visibility can have changed by where the blocker's edge
+/// is straight. `ratio` is the blocker's share of the way to the light now (metres for a
+/// direction); `half_axes` are the light's in the previous frame, zero where it has no extent.
+/// Ours.
+///   e = s' + (b' - s') / ratio - l'       sweep = |(e.a_k / (2 a_k.a_k))_k|
+template <class T>
+T shadow_sweep(const ShadowSample<T>& sample, T ratio, const glm::mat<3, 3, T>& half_axes) {
+  const glm::vec<3, T> moved = (sample.blocker - sample.surface) / std::max(ratio, T(1e-6)) +
+                               sample.light.w * sample.surface - glm::vec<3, T>(sample.light);
+  T sum = T(0);
+  for (int k = 0; k < 3; ++k) {
+    const T square_m = glm::dot(half_axes[k], half_axes[k]);
+    const T widths = square_m > T(0) ? glm::dot(moved, half_axes[k]) / (T(2) * square_m) : T(0);
+    sum += widths * widths;
+  }
+  return std::sqrt(sum);
+}
+
 /// TRMV's trust in a shadow vector on uneven ground: G(theta - 90 deg), a Gaussian with peak 1 and
 /// sigma 0.1 rad, of the angle theta between the receiver's previous normal and the line from the
 /// intersection to the surface `seen` at its pixel. 1 where they agree within `footprint_m`.

@@ -156,6 +156,7 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
       if (kind >= 1) b.follow_shadow(x, y, (x + 3) % kWidth, (y + 5) % kHeight);
       if (kind >= 2) b.shadow.motion[0].at(x, y) = random.real(-0.2f, 0.2f);
       if (kind >= 2) b.shadow.motion[1].at(x, y) = random.real(-0.2f, 0.2f);
+      b.shadow.motion[kMotionSweep].at(x, y) = random.real(0.0f, 0.2f);
     }
   const ExpectedErrorRule rule;
   b.run(b.by_effect(), rule);
@@ -178,13 +179,16 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const auto at = static_cast<std::size_t>(y * kWidth + x);
-      double threshold = rule.noise_threshold;
+      double move = b.shadow.motion[kMotionSweep].at(x, y);
       if (samples[1][at] > 0) {
         const double slide_px = std::abs(double(b.shadow.motion[0].at(x, y))) +
                                 std::abs(double(b.shadow.motion[1].at(x, y)));
-        threshold += double(rule.slow_threshold) * std::exp(-slide_px / double(rule.slow_px)) +
-                     double(rule.rest_threshold) * std::exp(-slide_px / double(rule.rest_px));
+        move = move * slide_px / std::max(move + slide_px, 1e-9);
       }
+      const double threshold =
+          double(rule.noise_threshold) +
+          double(rule.slow_threshold) * std::exp(-move / double(rule.slow_move)) +
+          double(rule.rest_threshold) * std::exp(-move / double(rule.rest_move));
       const double v = b.variance[0].at(x, y);
       Promise p[2] = {};
       for (const int which : {0, 1})
@@ -212,24 +216,29 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
   EXPECT_GT(by_none, 10);
 }
 
-TEST(ExpectedError, ShadowAtRestKeepsAHistoryThatASlidingOneRejects) {
-  float weights[2];
-  for (const bool sliding : {false, true}) {
+// Four shadows at the same small difference: one at rest, one that slides by 20 pixels across a
+// sharp edge, one that slides as far within a penumbra 100 times as wide, and one whose vector
+// leads nowhere before a light that it sweeps.
+TEST(ExpectedError, TheMoreOfItsPenumbraAShadowMovesTheLessItKeeps) {
+  const auto trust = [](float slide_px, float sweep, bool followed) {
     Blend b;
     test::fill(b.noisy[0], 0.5f);
-    test::fill(b.before.data[0], 0.6f);  // a small difference
+    test::fill(b.before.data[0], 0.6f);
     test::fill(b.before.samples(), 64.0f);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
-        b.follow_shadow(x, y, x, y);
-        if (sliding) b.shadow.motion[0].at(x, y) = 20.0f;
+        if (followed) b.follow_shadow(x, y, x, y);
+        b.shadow.motion[kMotionX].at(x, y) = slide_px;
+        b.shadow.motion[kMotionSweep].at(x, y) = sweep;
       }
     Channels<float> debug(kWidth, kHeight, kDebugChannels);
     b.run(b.by_effect(), {}, &debug);
-    weights[sliding ? 1 : 0] = debug[kDebugTrust].at(10, 8);
-  }
-  EXPECT_GT(weights[0], 0.95f);
-  EXPECT_LT(weights[1], 0.85f);
+    return debug[kDebugTrust].at(10, 8);
+  };
+  EXPECT_GT(trust(0, 0, true), 0.95f);
+  EXPECT_LT(trust(20, 10, true), 0.85f);
+  EXPECT_GT(trust(20, 0.002f, true), 0.95f);
+  EXPECT_LT(trust(0, 1, false), 0.85f);
 }
 
 }  // namespace

@@ -96,6 +96,7 @@ TEST(FollowBlock, ShadowsAgreeWithTheOracle) {
       const Row row(test::perspective_camera, size, random);
       const Motion surface(random, row.guides.view), occluder(random, row.guides.view);
       const glm::mat4 previous_pixel(row.guides.view.pixel_from_relative);
+      const glm::mat3 half_axes{{0.3f, 0.1f, 0}, {-0.1f, 0.3f, 0.2f}, {0, 0, 0}};
       std::vector<float> ratio, light[3], before[3];
       for (int i = 0; i < size; ++i) {
         ratio.push_back(random.real(0.1f, 0.9f) * (w > 0 ? 1.0f : 3.0f));
@@ -115,6 +116,7 @@ TEST(FollowBlock, ShadowsAgreeWithTheOracle) {
                        {light[0].data(), light[1].data(), light[2].data()},
                        {before[0].data(), before[1].data(), before[2].data()},
                        w,
+                       half_axes,
                        got});
         for (int i = 0; i < size; ++i) {
           const auto k = static_cast<std::size_t>(i);
@@ -128,6 +130,9 @@ TEST(FollowBlock, ShadowsAgreeWithTheOracle) {
               glm::normalize(surface.exact.rotate * glm::dvec3(row.guides.normal_at(i, 1))),
               glm::dvec3(occluder.exact.carry * glm::dvec4(blocker, 1)),
               glm::dvec4(at(before), double(w))};
+          const double sweep =
+              shadow_sweep(sample, double(ratio[k]), glm::mat<3, 3, double>(half_axes));
+          ASSERT_NEAR(got.sweep[i], sweep, 1e-4 * (1 + sweep)) << isa_name(isa);
           glm::dvec3 hit{0};
           PixelPoint<double> want{0, 0, 0, false};
           if (shadow_previous_point(sample, hit))

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/frame/conventions.h"
+#include "core/motion/shadow_motion.h"
 #include "tests/core/small_world.h"
 
 namespace holdfast {
@@ -167,6 +168,45 @@ TEST(ShadowTracer, FootprintIsThePenumbraInPixels) {
   EXPECT_NEAR(field[kFieldPrecision].at(x, y), 0.5 / (across * across / 6 + 0.5), 1e-4);
   EXPECT_NEAR(field[kFieldPrecision + 1].at(x, y), 0.0, 1e-4);
   EXPECT_NEAR(field[kFieldPrecision + 2].at(x, y), 0.5 / (along * along / 6 + 0.5), 1e-4);
+}
+
+// A blocker close to the light casts it over more than the picture, and past the camera: by the
+// derivative, 1e4 times the size is 1e8 times the covariance.
+TEST(ShadowTracer, FootprintGrowsWithTheLightPastTheCamera) {
+  float precision[2];
+  for (const double scale : {1e-2, 1.0}) {
+    World world;
+    world.light.width *= scale;
+    world.light.height *= scale;
+    world.move();
+    world.block(20, 16, 0.5f, 0.5f, 0.9);
+    Channels<float> field(kWidth, kHeight, kEffectFieldChannels);
+    world.tracer().measure(field, 0);
+    const double e = field[kFieldPrecision].at(20, 16), f = field[kFieldPrecision + 1].at(20, 16),
+                 g = field[kFieldPrecision + 2].at(20, 16);
+    precision[scale < 1] = static_cast<float>(g / (2 * (e * g - f * f)) - 0.5);
+  }
+  EXPECT_GT(precision[0], 400.0f) << "px^2: wider than 20 pixels";
+  EXPECT_NEAR(precision[1] * 1e4f / precision[0], 1.0f, 0.02f);
+}
+
+// A light that moves by a whole width of its own, before a blocker that stands still.
+TEST(ShadowSweep, IsOneWhereTheLightMovesByItsWidth) {
+  const glm::dvec3 surface(0.2, 0, -1), light(1, 3, -2), before = light + glm::dvec3(0.6, 0, 0);
+  const glm::dmat3 half_axes{{0.3, 0, 0}, {0, 0, 0.2}, {0, 0, 0}};
+  for (const double ratio : {0.2, 0.9}) {
+    const glm::dvec3 blocker = surface + ratio * (light - surface);
+    const auto sweep = [&](const glm::dvec3& s, const glm::dvec3& b, const glm::dvec3& l) {
+      return shadow_sweep(ShadowSample<double>{s, {0, 1, 0}, b, glm::dvec4(l, 1)}, ratio,
+                          half_axes);
+    };
+    EXPECT_NEAR(sweep(surface, blocker, before), 1.0, 1e-12);
+    EXPECT_NEAR(sweep(surface, blocker, light), 0.0, 1e-12) << "nothing moves";
+    const glm::dvec3 all(0.5, -0.1, 0.3);
+    EXPECT_NEAR(sweep(surface + all, blocker + all, light + all), 0.0, 1e-12) << "all move as one";
+    EXPECT_NEAR(sweep(surface, blocker + glm::dvec3(0.6 * ratio, 0, 0), light), 1.0, 1e-12)
+        << "a blocker's motion is seen magnified";
+  }
 }
 
 }  // namespace
