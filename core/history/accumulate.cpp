@@ -22,20 +22,25 @@ bool has_effect(const HistorySources& sources, int x, int y) {
 /// Chooses what the pixels from (x, y) on follow.
 void choose(const HistorySources& sources, Rectification rectification, int x, int y, int count,
             AccumulationLanes& lanes) {
-  lanes.any_clamped = false;
+  const Taps none[kTapBlock] = {};
+  const Taps* surface = sources.surface != nullptr ? sources.surface->taps[0].row(y) + x : none;
+  const Taps* effect = sources.effect != nullptr ? sources.effect->taps[0].row(y) + x : none;
+  const float* trust =
+      sources.effect != nullptr ? sources.effect->motion[kMotionTrust].row(y) + x : nullptr;
+  const float clamped[2] = {clamps(rectification, false) ? 1.0f : 0.0f,
+                            clamps(rectification, true) ? 1.0f : 0.0f};
+  float any_clamped = 0;
   for (int i = 0; i < count; ++i) {
-    const bool by_effect = has_effect(sources, x + i, y);
-    lanes.taps[i] = by_effect                    ? sources.effect->taps[0].at(x + i, y)
-                    : sources.surface != nullptr ? sources.surface->taps[0].at(x + i, y)
-                                                 : Taps{};
-    const bool valid = by_effect || lanes.taps[i].any();
-    float trust = by_effect ? sources.effect->motion[kMotionTrust].at(x + i, y) : 1.0f;
-    if (sources.antilag) trust *= 1.0f - sources.antilag.at((x + i) / kStratum, y / kStratum);
-    lanes.trust[i] = valid ? trust : 0.0f;
-    const bool clamped = valid && clamps(rectification, by_effect);
-    lanes.clamped[i] = clamped ? 1.0f : 0.0f;
-    lanes.any_clamped |= clamped;
+    const bool by_effect = effect[i].any(), valid = by_effect || surface[i].any();
+    lanes.taps[i] = by_effect ? effect[i] : surface[i];
+    lanes.trust[i] = by_effect ? trust[i] : (valid ? 1.0f : 0.0f);
+    lanes.clamped[i] = valid ? clamped[by_effect ? 1 : 0] : 0.0f;
+    any_clamped += lanes.clamped[i];
   }
+  lanes.any_clamped = any_clamped > 0.0f;
+  if (sources.antilag)
+    for (int i = 0; i < count; ++i)
+      lanes.trust[i] *= 1.0f - sources.antilag.at((x + i) / kStratum, y / kStratum);
 }
 
 void record(const AccumulationBlock& block, const HistorySources& sources, Channels<float>& debug) {

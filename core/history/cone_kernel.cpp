@@ -118,20 +118,22 @@ HOLDFAST_INLINE void find_keep(const ConeCorrection& a, const float* cone, float
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
       const float kept = min_of(1.0f, others / max_of(samples[i], 1e-20f));
-      keep[i] = cone[i] == index ? kept : keep[i];
-      samples[i] = cone[i] == index ? kept * samples[i] + 1.0f : samples[i];
+      const float known = samples[i], before = keep[i];
+      keep[i] = cone[i] == index ? kept : before;
+      samples[i] = cone[i] == index ? kept * known + 1.0f : known;
     }
   }
 }
 
 /// out[i] = what the pixel's cone holds of six channels; 0 without a cone.
 HOLDFAST_INLINE void pick(float* const* of, const float* cone, int count, float* out) {
-  for (int i = 0; i < count; ++i) out[i] = 0.0f;
-  for (int k = 0; k < kCones; ++k) {
-    const float index = static_cast<float>(k);
-    const float* in = of[k];
+  const float *s0 = of[0], *s1 = of[1], *s2 = of[2], *s3 = of[3], *s4 = of[4], *s5 = of[5];
 #pragma GCC ivdep
-    for (int i = 0; i < count; ++i) out[i] = cone[i] == index ? in[i] : out[i];
+  for (int i = 0; i < count; ++i) {
+    const float k = cone[i], v0 = s0[i], v1 = s1[i], v2 = s2[i], v3 = s3[i], v4 = s4[i], v5 = s5[i];
+    const float from_4 = k == 4.0f ? v4 : (k == 5.0f ? v5 : 0.0f);
+    const float from_2 = k == 2.0f ? v2 : (k == 3.0f ? v3 : from_4);
+    out[i] = k == 0.0f ? v0 : (k == 1.0f ? v1 : from_2);
   }
 }
 
@@ -142,8 +144,10 @@ HOLDFAST_INLINE void add_values(const ConeCorrection& a, int colour, const float
     const float index = static_cast<float>(k);
     float* sum = a.rows.sum(colour, k);
 #pragma GCC ivdep
-    for (int i = 0; i < a.rows.count; ++i)
-      sum[i] = cone[i] == index ? keep[i] * sum[i] + value[i] : sum[i];
+    for (int i = 0; i < a.rows.count; ++i) {
+      const float before = sum[i], added = keep[i] * before + value[i];
+      sum[i] = cone[i] == index ? added : before;
+    }
   }
 }
 

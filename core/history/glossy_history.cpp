@@ -57,12 +57,19 @@ class GlossyTracer {
 
  private:
   void find_slots(int x, int y, int count, Lanes& lanes) const {
+    const float* depth = now_.depth().row(y) + x;
+    const std::uint32_t* id = now_.id[0].row(y) + x;
+    const std::uint32_t* hit_id = planes_.id != nullptr ? planes_.id->ids().row(y) + x : nullptr;
+    std::uint32_t last = 0, last_hit = 0;
+    int slot = scene_.slot_of(last), hit_slot = hit_id != nullptr ? slot : 0;
     for (int i = 0; i < count; ++i) {
-      const bool surface = now_.depth().at(x + i, y) > 0.0f;
-      lanes.surface[i] = surface ? scene_.slot_of(now_.id[0].at(x + i, y)) : -1;
-      lanes.hit[i] = planes_.id != nullptr ? scene_.slot_of(planes_.id->ids().at(x + i, y)) : 0;
-      lanes.roughness[i] = now_.roughness_at(x + i, y);
+      if (id[i] != last) slot = scene_.slot_of(last = id[i]);
+      if (hit_id != nullptr && hit_id[i] != last_hit)
+        hit_slot = scene_.slot_of(last_hit = hit_id[i]);
+      lanes.surface[i] = depth[i] > 0.0f ? slot : -1;
+      lanes.hit[i] = hit_slot;
     }
+    for (int i = 0; i < count; ++i) lanes.roughness[i] = now_.roughness_at(x + i, y);
   }
 
   /// Follows the pixels on one object that reflect another.

@@ -1,11 +1,11 @@
 #include "core/history/shadow_history.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
-#include "core/motion/shadow_motion.h"
+#include "core/motion/shadow_falloff.h"
+#include "core/motion/shadow_field.h"
 
 namespace holdfast {
 namespace {
@@ -13,25 +13,6 @@ namespace {
 constexpr float kNoBlockerSweep = 1e6f;  // where nothing blocks, a visibility is what is seen now
 constexpr float kLeastValid =
     1e-3f;  // share of blocked samples nearby below which none is borrowed
-
-/// TRMV's trust in the vector that leads to previous pixel (px, py): compares the receiver's plane
-/// with the surface seen there. 0 where there is none.
-float falloff_at(const Guides& previous, const Receiver& receiver, float px, float py) {
-  const int x = static_cast<int>(std::floor(px)), y = static_cast<int>(std::floor(py));
-  if (x < 0 || y < 0 || x >= previous.view.width || y >= previous.view.height ||
-      !(previous.depth().at(x, y) > 0.0f))
-    return 0.0f;
-  // The receiver's plane along the ray of (px, py): X(d) is affine in d.
-  const glm::vec3 start = previous.rays.position(px, py, 0.0f);
-  const glm::vec3 ray = previous.rays.position(px, py, 1.0f) - start;
-  const float facing = glm::dot(ray, receiver.normal);
-  if (!(std::abs(facing) > 1e-6f)) return 0.0f;
-  const float depth = glm::dot(receiver.point - start, receiver.normal) / facing;
-  const float footprint = static_cast<float>(previous.view.pixel_angle) *
-                          (previous.rays.near_weight + previous.rays.far_weight * depth);
-  return planarity_falloff(start + depth * ray, previous.position_at(x, y), receiver.normal,
-                           footprint);
-}
 
 /// A block of a row on its way to the previous frame.
 struct Lanes {
@@ -53,12 +34,15 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
     any |= lanes.wanted[i] != 0;
   }
   if (!any) return false;
+  std::uint32_t last_id = 0;
+  int last_slot = frames.scene.slot_of(last_id);
   for (int i = 0; i < count; ++i) {
     const bool own = rule == ShadowRule::kPaper && own_ratio[i] > 0.0f;
     lanes.own[i] = own;
     lanes.ratio[i] = own ? own_ratio[i] : ratio[i] / (lanes.wanted[i] ? valid[i] : 1.0f);
     if (!lanes.wanted[i]) continue;
-    lanes.surface[i] = frames.scene.slot_of(id[i]);
+    if (id[i] != last_id) last_slot = frames.scene.slot_of(last_id = id[i]);
+    lanes.surface[i] = last_slot;
     lanes.occluder[i] =
         own ? tracer.own_blocker_slot(x + i, y) : tracer.nearest_blocker_slot(x + i, y);
   }
@@ -76,16 +60,15 @@ void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, 
     find_block_taps_on_any_surface(search);
   else
     find_block_taps(search);
-  for (int i = 0; i < count; ++i) {
-    if (found.found[i] == 0.0f) continue;
-    float trust = 0;
-    if (taps[i].any())
-      trust =
-          paper ? falloff_at(frames.previous, receiver_of(found, i, id[i]), found.x[i], found.y[i])
-                : 1.0f;
-    out.set(x + i, y, taps[i], found.x[i] - (static_cast<float>(x + i) + 0.5f),
-            found.y[i] - (static_cast<float>(y) + 0.5f), trust);
-  }
+  float trust[kFollowBlock];
+  if (paper)
+    shadow_falloff({frames.previous, found, count, trust});
+  else
+    std::fill_n(trust, count, 1.0f);
+  for (int i = 0; i < count; ++i)
+    if (found.found[i] != 0.0f)
+      out.set(x + i, y, taps[i], found.x[i] - (static_cast<float>(x + i) + 0.5f),
+              found.y[i] - (static_cast<float>(y) + 0.5f), taps[i].any() ? trust[i] : 0.0f);
 }
 
 }  // namespace

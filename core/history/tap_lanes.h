@@ -30,20 +30,20 @@ inline constexpr std::int32_t kNoStart = std::numeric_limits<std::int32_t>::max(
 /// must be inside a channel of the image's size: `last_start` is the last such start of lane 0.
 HOLDFAST_INLINE void find_group_runs(TapLanes& lanes, int group, std::int32_t last_start) {
   const std::int32_t* start = lanes.start + group * kTapGroup;
+  std::int32_t* starts = lanes.starts[group];
   int runs = 0;
-  for (std::int32_t after = std::numeric_limits<std::int32_t>::min();;) {
-    std::int32_t next = kNoStart;
-#pragma GCC unroll 1
-    for (int i = 0; i < kTapGroup; ++i) {
-      const std::int32_t own = start[i], candidate = own > after ? own : kNoStart;
-      next = min_of(next, candidate);
+  std::int32_t last = kNoStart;
+  for (int i = 0; i < kTapGroup; ++i) {
+    if (start[i] == last || start[i] == kNoStart) continue;
+    last = start[i];
+    int run = 0;
+    while (run < runs && starts[run] != last) ++run;
+    if (run < runs) continue;
+    if (runs == kMostStarts || last + group * kTapGroup < 0 || last > last_start) {
+      lanes.runs[group] = -1;
+      return;
     }
-    if (next == kNoStart) break;
-    if (runs == kMostStarts || next + group * kTapGroup < 0 || next > last_start) {
-      runs = -1;
-      break;
-    }
-    lanes.starts[group][runs++] = after = next;
+    starts[runs++] = last;
   }
   lanes.runs[group] = runs;
 }

@@ -60,7 +60,7 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
   previous_pixel_ = glm::mat4(scene.previous_view().pixel_from_relative);
 }
 
-bool ShadowTracer::blocked(int x, int y) const {
+inline bool ShadowTracer::blocked(int x, int y) const {
   const float blocker_m = distance_.at(x, y);
   return now_.depth().at(x, y) > 0.0f && blocker_m >= 0.0f && std::isfinite(blocker_m);
 }
@@ -127,16 +127,21 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
   float light[3][kFollowBlock], previous[3][kFollowBlock];
   const glm::vec4 centre = light_point(light_, 0.5f, 0.5f);
   glm::vec4 now = relative_from_light_ * centre, before = previous_relative_from_light_ * centre;
-  const glm::vec4 centre_now = now, centre_before = before;
-  for (int i = 0; i < pixels.count; ++i) {
-    if (own != nullptr) {
-      const glm::vec4 local = light_point(light_, u_.at(x + i, y), v_.at(x + i, y));
-      now = own[i] ? relative_from_light_ * local : centre_now;
-      before = own[i] ? previous_relative_from_light_ * local : centre_before;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      light[axis][i] = now[axis];
-      previous[axis][i] = before[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(light[axis], pixels.count, now[axis]);
+    std::fill_n(previous[axis], pixels.count, before[axis]);
+  }
+  if (own != nullptr) {
+    const float *u = u_.row(y) + x, *v = v_.row(y) + x;
+    for (int i = 0; i < pixels.count; ++i) {
+      if (!own[i]) continue;
+      const glm::vec4 local = light_point(light_, u[i], v[i]);
+      now = relative_from_light_ * local;
+      before = previous_relative_from_light_ * local;
+      for (int axis = 0; axis < 3; ++axis) {
+        light[axis][i] = now[axis];
+        previous[axis][i] = before[axis];
+      }
     }
   }
   holdfast::follow_shadow({pixels,
@@ -165,7 +170,9 @@ PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const
 
 int ShadowTracer::nearest_blocker_slot(int x, int y) const {
   if (id_ == nullptr || scene_.slot_count() == 1) return 0;
-  for (const SearchStep& step : search_order()) {
+  if (blocked(x, y)) return own_blocker_slot(x, y);
+  static const auto& order = search_order();
+  for (const SearchStep& step : order) {
     const int qx = x + step.x, qy = y + step.y;
     if (qx < 0 || qy < 0 || qx >= now_.view.width || qy >= now_.view.height || !blocked(qx, qy))
       continue;
