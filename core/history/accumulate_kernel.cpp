@@ -103,7 +103,8 @@ HOLDFAST_INLINE float clamp_to(float v, float low, float high) {
 /// Clamps history to what the 3x3 neighbourhoods of its pixels allow. Clamping each axis on its own
 /// may leave the colours that exist; those are brought back to 0.
 template <int C, bool kBox>
-HOLDFAST_INLINE void rectify(const AccumulationBlock& a, float (*history)[kTapBlock]) {
+HOLDFAST_INLINE void rectify(const AccumulationBlock& a, const float* clamped,
+                             float (*history)[kTapBlock]) {
   Columns s;
   clear<C>(s);
   const int first = max_of(a.y - 1, 0), last = min_of(a.y + 1, a.guides.view.height - 1);
@@ -112,7 +113,6 @@ HOLDFAST_INLINE void rectify(const AccumulationBlock& a, float (*history)[kTapBl
     box_bounds<C>(a, s);
   else
     deviation_bounds<C>(a, s);
-  const float* clamped = a.lanes.clamped;
   float *h0 = history[0], *h1 = history[C / 2], *h2 = history[C - 1];
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
@@ -155,6 +155,26 @@ HOLDFAST_INLINE void blend_moments(const AccumulationBlock& a, const TapLanes& l
   }
 }
 
+/// The trust in each pixel's history, 0 where there is none, and whether it is clamped; returns
+/// whether any is.
+HOLDFAST_INLINE bool weigh(const AccumulationBlock& a, const TapLanes& lanes, float* trust,
+                           float* clamped) {
+  const float of_surface = a.lanes.clamp_surface ? 1.0f : 0.0f;
+  const float of_effect = a.lanes.clamp_effect ? 1.0f : 0.0f;
+  for (int i = 0; i < a.count; ++i) {
+    trust[i] = lanes.start[i] != kNoStart ? 1.0f : 0.0f;
+    clamped[i] = of_surface * trust[i];
+  }
+  if (a.lanes.effect != nullptr)
+    for (int i = 0; i < a.count; ++i)
+      clamped[i] = trust[i] * (a.lanes.effect[i] > 0.0f ? of_effect : of_surface);
+  if (a.lanes.trust != nullptr)
+    for (int i = 0; i < a.count; ++i) trust[i] *= a.lanes.trust[i];
+  float any = 0.0f;
+  for (int i = 0; i < a.count; ++i) any = max_of(any, clamped[i]);
+  return any > 0.0f;
+}
+
 HOLDFAST_INLINE void accumulate_kernel_body(const AccumulationBlock& a) {
   TapLanes lanes;
   load_lanes(a.lanes.taps, a.count, a.guides.depth(), lanes);
@@ -162,15 +182,16 @@ HOLDFAST_INLINE void accumulate_kernel_body(const AccumulationBlock& a) {
   float history[3][kTapBlock];
   for (int c = 0; c < channels; ++c) gather_lanes(a.before.data[c], lanes, history[c]);
   gather_lanes(a.before.samples(), lanes, a.history_samples);
-  if (a.lanes.any_clamped) {
+  float trust[kTapBlock], clamped[kTapBlock];
+  if (weigh(a, lanes, trust, clamped)) {
     const bool box = a.rule.rectification == Rectification::kClampBox;
     if (channels == 1)
-      box ? rectify<1, true>(a, history) : rectify<1, false>(a, history);
+      box ? rectify<1, true>(a, clamped, history) : rectify<1, false>(a, clamped, history);
     else
-      box ? rectify<3, true>(a, history) : rectify<3, false>(a, history);
+      box ? rectify<3, true>(a, clamped, history) : rectify<3, false>(a, clamped, history);
   }
   const float alpha = a.rule.alpha, most = (2.0f - alpha) / alpha;
-  const float *n = a.history_samples, *trust = a.lanes.trust;
+  const float* n = a.history_samples;
   float *weight = a.history_weight, *samples = a.now.samples().row(a.y) + a.x;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {

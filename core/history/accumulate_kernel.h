@@ -9,10 +9,10 @@ namespace holdfast {
 
 /// What each pixel of a block follows.
 struct AccumulationLanes {
-  Taps taps[kTapBlock];      ///< none: no history
-  float trust[kTapBlock];    ///< 0..1; 0 without taps
-  float clamped[kTapBlock];  ///< 1 where history is rectified, else 0
-  bool any_clamped;
+  const Taps* taps;     ///< none: no history
+  const float* trust;   ///< 0..1, of pixels with taps; null: 1
+  const float* effect;  ///< 1 where the effect's vector is followed; null: the surface's everywhere
+  bool clamp_surface, clamp_effect;  ///< which history is rectified
 };
 
 /// The block of `count` pixels from (x, y) on.

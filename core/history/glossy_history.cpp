@@ -13,13 +13,19 @@ namespace {
 
 constexpr float kRoughnessTolerance = 0.1f;  // perceptual; ours
 
-/// A block of a row on its way to the previous frame.
-struct Lanes {
-  ReflectedBlock images;
-  FollowedBlock wanted;  ///< where each receiver is looked for
-  Taps taps[kFollowBlock];
+/// Receivers that are looked for.
+struct Wanted {
+  FollowedBlock wanted;
+  std::uint32_t id[kFollowBlock];
   float roughness[kFollowBlock];
-  int surface[kFollowBlock], hit[kFollowBlock];  ///< slots; -1: followed
+  Taps taps[kFollowBlock];
+};
+
+/// A block of a row on its way to the previous frame.
+struct Lanes : Wanted {
+  ReflectedBlock images;
+  float centre_x[kFollowBlock], centre_y[kFollowBlock];  ///< of the images
+  int surface[kFollowBlock], hit[kFollowBlock];          ///< slots; -1: followed
 };
 
 class GlossyTracer {
@@ -41,18 +47,16 @@ class GlossyTracer {
     std::fill_n(lanes.wanted.found, count, 0.0f);
     for (int i = 0; i < count; ++i)
       if (lanes.surface[i] >= 0) follow(lanes.surface[i], lanes.hit[i], x, y, count, lanes);
-    for (int i = 0; i < count; ++i) out.set(x + i, y, {}, 0, 0, 0);
     if (rule_ == GlossyRule::kStochastic) {
-      FollowedBlock centres = lanes.wanted;
+      std::copy_n(lanes.wanted.x, count, lanes.centre_x);
+      std::copy_n(lanes.wanted.y, count, lanes.centre_y);
       scatter(x, y, count, lanes);
-      take(x, y, count, lanes, out);
-      for (int i = 0; i < count; ++i)
-        if (out.taps[0].at(x + i, y).any()) centres.found[i] = 0.0f;
-      lanes.wanted = centres;
     }
-    if (std::any_of(lanes.wanted.found, lanes.wanted.found + count,
-                    [](float found) { return found > 0.0f; }))
-      take(x, y, count, lanes, out);
+    std::copy_n(now_.id[0].row(y) + x, count, lanes.id);
+    find_block_taps({previous_, lanes.wanted, lanes.id, count, lanes.taps});
+    drop_foreign(count, lanes);
+    if (rule_ == GlossyRule::kStochastic) look_at_centres(count, lanes);
+    write(x, y, count, lanes, out);
   }
 
  private:
@@ -95,7 +99,7 @@ class GlossyTracer {
       if (lanes.surface[i] != surface || lanes.hit[i] != hit) continue;
       lanes.surface[i] = -1;
       if (!traceable || lanes.images.then.found[i] == 0.0f) continue;
-      copy_lane(lanes.images.then, i, lanes.wanted);
+      copy_lane(lanes.images.then, i, lanes.wanted, i);
       if (rule_ != GlossyRule::kRelative) continue;
       const float moved_x = moves ? lanes.images.then.x[i] - lanes.images.x[i] : 0.0f;
       const float moved_y = moves ? lanes.images.then.y[i] - lanes.images.y[i] : 0.0f;
@@ -119,19 +123,48 @@ class GlossyTracer {
                        count, lanes.wanted.x, lanes.wanted.y});
   }
 
-  /// Writes the history of the pixels that are found where they are wanted.
-  void take(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
-    find_block_taps({previous_, lanes.wanted, now_.id[0].row(y) + x, count, lanes.taps});
+  /// Takes the taps from receivers of another roughness.
+  void drop_foreign(int count, Wanted& lanes) const {
+    if (!previous_.roughness || !now_.roughness) return;
+    const ChannelView<const float> roughness = previous_.roughness[0];
     for (int i = 0; i < count; ++i)
-      if (lanes.wanted.found[i] > 0.0f && lanes.taps[i].any() &&
-          same_roughness(lanes.taps[i], lanes.roughness[i]))
-        out.set(x + i, y, lanes.taps[i], lanes.wanted.x[i] - (static_cast<float>(x + i) + 0.5f),
-                lanes.wanted.y[i] - (static_cast<float>(y) + 0.5f), 1.0f);
+      if (!(std::abs(gather(roughness, lanes.taps[i]) - lanes.roughness[i]) <= kRoughnessTolerance))
+        lanes.taps[i] = Taps{};
   }
 
-  bool same_roughness(const Taps& taps, float roughness) const {
-    if (!previous_.roughness || !now_.roughness) return true;
-    return std::abs(gather(previous_.roughness[0], taps) - roughness) <= kRoughnessTolerance;
+  /// Looks at the images themselves for receivers that were not found near them, which are moved
+  /// together so that no others are looked for.
+  void look_at_centres(int count, Lanes& lanes) const {
+    Wanted lost;
+    int source[kFollowBlock], left = 0;
+    for (int i = 0; i < count; ++i) {
+      if (lanes.wanted.found[i] == 0.0f || lanes.taps[i].any()) continue;
+      lanes.wanted.x[i] = lanes.centre_x[i];
+      lanes.wanted.y[i] = lanes.centre_y[i];
+      copy_lane(lanes.wanted, i, lost.wanted, left);
+      lost.id[left] = lanes.id[i];
+      lost.roughness[left] = lanes.roughness[i];
+      source[left++] = i;
+    }
+    if (left == 0) return;
+    find_block_taps({previous_, lost.wanted, lost.id, left, lost.taps});
+    drop_foreign(left, lost);
+    for (int k = 0; k < left; ++k) lanes.taps[source[k]] = lost.taps[k];
+  }
+
+  /// Writes the history of the pixels from (x, y) on: none where there are no taps.
+  void write(int x, int y, int count, const Lanes& lanes, EffectHistory& out) const {
+    Taps* taps = out.taps[0].row(y) + x;
+    float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
+          *trust = out.motion[kMotionTrust].row(y) + x;
+    const float row = static_cast<float>(y) + 0.5f;
+    for (int i = 0; i < count; ++i) {
+      const bool any = lanes.wanted.found[i] > 0.0f && lanes.taps[i].any();
+      taps[i] = any ? lanes.taps[i] : Taps{};
+      motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(x + i) + 0.5f) : 0.0f;
+      motion_y[i] = any ? lanes.wanted.y[i] - row : 0.0f;
+      trust[i] = any ? 1.0f : 0.0f;
+    }
   }
 
   const Guides& now_;

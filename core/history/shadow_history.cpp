@@ -101,7 +101,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
             continue;
           lanes.wanted[k] = 0;
           out.motion[kMotionSweep].at(x + k, y) = found.sweep[k];
-          if (found.found[k] != 0.0f) copy_lane(found, k, followed);
+          if (found.found[k] != 0.0f) copy_lane(found, k, followed, k);
         }
       }
       take(frames, rule, followed, x, y, pixels.count, out);

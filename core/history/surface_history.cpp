@@ -65,7 +65,7 @@ void follow_object(const FramePair& frames, const Plane* given_motion, int slot,
   for (int i = 0; i < pixels.count; ++i) {
     if (!wanted[i] || slots[i] != slot) continue;
     wanted[i] = 0;
-    if (found.found[i] != 0.0f) copy_lane(found, i, followed);
+    if (found.found[i] != 0.0f) copy_lane(found, i, followed, i);
   }
 }
 

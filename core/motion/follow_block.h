@@ -31,14 +31,14 @@ struct FollowedBlock {
                               ///< it
 };
 
-/// Copies lane i.
-inline void copy_lane(const FollowedBlock& from, int i, FollowedBlock& to) {
-  to.x[i] = from.x[i];
-  to.y[i] = from.y[i];
-  to.found[i] = from.found[i];
+/// Copies lane i to lane k, but for the sweep.
+inline void copy_lane(const FollowedBlock& from, int i, FollowedBlock& to, int k) {
+  to.x[k] = from.x[i];
+  to.y[k] = from.y[i];
+  to.found[k] = from.found[i];
   for (int axis = 0; axis < 3; ++axis) {
-    to.point[axis][i] = from.point[axis][i];
-    to.normal[axis][i] = from.normal[axis][i];
+    to.point[axis][k] = from.point[axis][i];
+    to.normal[axis][k] = from.normal[axis][i];
   }
 }
 

@@ -20,6 +20,8 @@ constexpr float kPixelVariance = 0.5f;        // px^2
 constexpr int kBlockerSearchRadius = 3;  // px; the window of the local means
 constexpr int kBlockerSearchSteps = (2 * kBlockerSearchRadius + 1) * (2 * kBlockerSearchRadius + 1);
 
+constexpr float kFarthest = std::numeric_limits<float>::max();
+
 struct SearchStep {
   int x, y;
 };
@@ -49,7 +51,7 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
       distance_(planes.distance->channel(0)),
       u_(planes.sample->channel(0)),
       v_(planes.sample->channel(1)),
-      id_(planes.id) {
+      id_(planes.id != nullptr ? planes.id->ids() : ChannelView<const std::uint32_t>{}) {
   const SceneMotion::LightMotion motion = scene.light(light.id);
   relative_from_light_ = glm::mat4(motion.relative_from_light);
   previous_relative_from_light_ = glm::mat4(motion.previous_relative_from_light);
@@ -62,7 +64,7 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
 
 inline bool ShadowTracer::blocked(int x, int y) const {
   const float blocker_m = distance_.at(x, y);
-  return now_.depth().at(x, y) > 0.0f && blocker_m >= 0.0f && std::isfinite(blocker_m);
+  return now_.depth().at(x, y) > 0.0f && blocker_m >= 0.0f && blocker_m <= kFarthest;
 }
 
 void ShadowTracer::measure(Channels<float>& out, int first) const {
@@ -157,7 +159,7 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
 }
 
 int ShadowTracer::own_blocker_slot(int x, int y) const {
-  return id_ != nullptr ? scene_.slot_of(id_->ids().at(x, y)) : 0;
+  return id_ ? scene_.slot_of(id_.at(x, y)) : 0;
 }
 
 PixelPoint<float> ShadowTracer::follow_own(int x, int y, float ratio) const {
@@ -169,14 +171,17 @@ PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const
 }
 
 int ShadowTracer::nearest_blocker_slot(int x, int y) const {
-  if (id_ == nullptr || scene_.slot_count() == 1) return 0;
+  if (!id_ || scene_.slot_count() == 1) return 0;
   if (blocked(x, y)) return own_blocker_slot(x, y);
+  const ChannelView<const float> depth = now_.depth();
+  const int width = depth.width, height = depth.height;
   static const auto& order = search_order();
   for (const SearchStep& step : order) {
     const int qx = x + step.x, qy = y + step.y;
-    if (qx < 0 || qy < 0 || qx >= now_.view.width || qy >= now_.view.height || !blocked(qx, qy))
-      continue;
-    return own_blocker_slot(qx, qy);
+    if (qx < 0 || qy < 0 || qx >= width || qy >= height) continue;
+    const float blocker_m = distance_.at(qx, qy);
+    if (blocker_m >= 0.0f && blocker_m <= kFarthest && depth.at(qx, qy) > 0.0f)
+      return own_blocker_slot(qx, qy);
   }
   return 0;
 }
