@@ -1,5 +1,6 @@
 #include "core/history/tap_search.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -87,12 +88,13 @@ TEST(TapSearch, FindsWhatIsFoundForOnePixelOnEveryInstructionSet) {
 /// Taps of a row whose offsets follow one another in `runs` pieces, with gaps.
 std::vector<Taps> pieces(const Guides& guides, int count, int runs, Random& random) {
   std::vector<Taps> taps(static_cast<std::size_t>(count));
-  const int width = guides.view.width, height = guides.view.height;
+  const int width = guides.view.width;
   for (int i = 0; i < count; ++i) {
     if (random.real() < 0.1f) continue;
     const int run = i * runs / count;
     Taps& t = taps[static_cast<std::size_t>(i)];
-    t = identity_taps(guides, std::min(i + 3 * run, width - 2), std::min(2 * run, height - 2));
+    const int x = i + (run % 2 == 0 ? 3 : -run);
+    t = identity_taps(guides, std::clamp(x, 0, width - 2), (run + 1) % 2);
     for (float& weight : t.weight) weight = random.real(0.1f, 1);
   }
   return taps;
