@@ -1,94 +1,13 @@
 #include "core/history/accumulate.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "core/frame/plane_size.h"
-#include "core/kernels/math.h"
+#include "core/history/accumulate_kernel.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
 namespace {
-
-using Colour = std::array<float, 3>;
-
-Colour ycocg_from_rgb(const Colour& c) {
-  return {0.25f * c[0] + 0.5f * c[1] + 0.25f * c[2], 0.5f * c[0] - 0.5f * c[2],
-          -0.25f * c[0] + 0.5f * c[1] - 0.25f * c[2]};
-}
-
-/// Clamping each axis on its own may leave the colours that exist; those are brought back to 0.
-Colour rgb_from_ycocg(const Colour& c) {
-  return {std::max(c[0] + c[1] - c[2], 0.0f), std::max(c[0] + c[2], 0.0f),
-          std::max(c[0] - c[1] - c[2], 0.0f)};
-}
-
-/// Reads a pixel in the space in which it is clamped.
-Colour load(const Channels<float>& image, int channels, int x, int y) {
-  if (channels == 1) return {image[0].at(x, y), 0, 0};
-  return ycocg_from_rgb({image[0].at(x, y), image[1].at(x, y), image[2].at(x, y)});
-}
-
-/// What a 3x3 neighbourhood allows, in the space of `load`.
-struct Bounds {
-  Colour low{}, high{};
-};
-
-/// Calls `visit` with each colour of the 3x3 neighbourhood of (x, y) that is on a surface.
-template <class Visit>
-void for_each_neighbour(const Guides& guides, const Channels<float>& noisy, int channels, int x,
-                        int y, const Visit& visit) {
-  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, guides.view.height - 1); ++j)
-    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, guides.view.width - 1); ++i)
-      if (guides.depth().at(i, j) > 0.0f) visit(load(noisy, channels, i, j));
-}
-
-/// Mean +- gamma sigma of the neighbourhood.
-Bounds deviation_bounds(const Guides& guides, const Channels<float>& noisy, int channels, int x,
-                        int y, float gamma) {
-  Colour sum{}, square_sum{};
-  float n = 0;
-  for_each_neighbour(guides, noisy, channels, x, y, [&](const Colour& c) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum[k] += c[k];
-      square_sum[k] += c[k] * c[k];
-    }
-    n += 1;
-  });
-  Bounds out;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float mean = sum[k] / n;
-    const float sigma = std::sqrt(std::max(square_sum[k] / n - mean * mean, 0.0f));
-    out.low[k] = mean - gamma * sigma;
-    out.high[k] = mean + gamma * sigma;
-  }
-  return out;
-}
-
-/// Least and greatest of the neighbourhood.
-Bounds box_bounds(const Guides& guides, const Channels<float>& noisy, int channels, int x, int y) {
-  const Colour own = load(noisy, channels, x, y);
-  Bounds out{own, own};
-  for_each_neighbour(guides, noisy, channels, x, y, [&](const Colour& c) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.low[k] = std::min(out.low[k], c[k]);
-      out.high[k] = std::max(out.high[k], c[k]);
-    }
-  });
-  return out;
-}
-
-/// Clamps `history` to what the 3x3 neighbourhood of (x, y) allows by `rule`.
-Colour clamp_to_neighbourhood(const Guides& guides, const Channels<float>& noisy, int channels,
-                              int x, int y, const AccumulationRule& rule, const Colour& history) {
-  const Bounds bounds = rule.rectification == Rectification::kClampBox
-                            ? box_bounds(guides, noisy, channels, x, y)
-                            : deviation_bounds(guides, noisy, channels, x, y, rule.clamp_gamma);
-  Colour in = channels == 1 ? history : ycocg_from_rgb(history);
-  for (std::size_t k = 0; k < 3; ++k) in[k] = std::clamp(in[k], bounds.low[k], bounds.high[k]);
-  return channels == 1 ? in : rgb_from_ycocg(in);
-}
 
 /// Whether history found along the effect's vector (or the surface's) is clamped.
 bool clamps(Rectification rectification, bool by_effect) {
@@ -96,54 +15,71 @@ bool clamps(Rectification rectification, bool by_effect) {
                                                         : rectification != Rectification::kNone;
 }
 
+/// Room for what a block follows where that is of both kinds.
+struct Choice {
+  Taps taps[kTapBlock];
+  float trust[kTapBlock], effect[kTapBlock];
+};
+
+/// Chooses what the pixels from (x, y) on follow.
+AccumulationLanes choose(const HistorySources& sources, Rectification rectification, int x, int y,
+                         int count, Choice& own) {
+  static constexpr Taps kNone[kTapBlock] = {};
+  const Taps* surface = sources.surface != nullptr ? sources.surface->taps[0].row(y) + x : kNone;
+  AccumulationLanes lanes{surface, nullptr, nullptr, clamps(rectification, false),
+                          clamps(rectification, true)};
+  if (sources.effect != nullptr) {
+    const Taps* effect = sources.effect->taps[0].row(y) + x;
+    const float* trust = sources.effect->motion[kMotionTrust].row(y) + x;
+    for (int i = 0; i < count; ++i) {
+      const bool by_effect = effect[i].any();
+      own.taps[i] = by_effect ? effect[i] : surface[i];
+      own.trust[i] = by_effect ? trust[i] : 1.0f;
+      own.effect[i] = by_effect ? 1.0f : 0.0f;
+    }
+    lanes.taps = own.taps;
+    lanes.trust = own.trust;
+    lanes.effect = own.effect;
+  }
+  if (sources.antilag) {
+    if (lanes.trust == nullptr) std::fill_n(own.trust, count, 1.0f);
+    for (int i = 0; i < count; ++i)
+      own.trust[i] *= 1.0f - sources.antilag.at((x + i) / kStratum, y / kStratum);
+    lanes.trust = own.trust;
+  }
+  return lanes;
+}
+
+void record(const AccumulationBlock& block, const HistorySources& sources, Channels<float>& debug) {
+  for (int i = 0; i < block.count; ++i) {
+    const int x = block.x + i, y = block.y;
+    const bool by_effect = block.lanes.effect != nullptr && block.lanes.effect[i] > 0.0f;
+    const bool valid = block.lanes.taps[i].any();
+    const Channels<float>* motion =
+        by_effect ? &sources.effect->motion : (valid ? &sources.surface->motion : nullptr);
+    debug[kDebugX].at(x, y) = motion != nullptr ? (*motion)[0].at(x, y) : 0.0f;
+    debug[kDebugY].at(x, y) = motion != nullptr ? (*motion)[1].at(x, y) : 0.0f;
+    debug[kDebugFrames].at(x, y) = block.history_samples[i];
+    debug[kDebugTrust].at(x, y) = block.history_weight[i];
+  }
+}
+
 }  // namespace
 
 void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
                 const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
                 Channels<float>* debug) {
-  const int channels = now.channels;
-  const float most_samples = (2.0f - rule.alpha) / rule.alpha;
+  const int width = guides.view.width;
   for_each_row(guides.view.height, [&](int y) {
-    for (int x = 0; x < guides.view.width; ++x) {
-      const bool by_effect = sources.effect != nullptr && sources.effect->taps[0].at(x, y).any();
-      const bool valid =
-          by_effect || (sources.surface != nullptr && sources.surface->taps[0].at(x, y).any());
-      Colour history{};
-      float samples = 0, trust = 0;
-      Taps taps;
-      if (valid) {
-        taps = by_effect ? sources.effect->taps[0].at(x, y) : sources.surface->taps[0].at(x, y);
-        trust = by_effect ? sources.effect->motion[kMotionTrust].at(x, y) : 1.0f;
-        if (sources.antilag) trust *= 1.0f - sources.antilag.at(x / kStratum, y / kStratum);
-        samples = gather(before.samples(), taps);
-        for (int c = 0; c < channels; ++c)
-          history[static_cast<std::size_t>(c)] = gather(before.data[c], taps);
-        if (clamps(rule.rectification, by_effect))
-          history = clamp_to_neighbourhood(guides, noisy, channels, x, y, rule, history);
-      }
-      const float base = std::max(rule.alpha, 1.0f / (samples + 1.0f));
-      const float alpha = 1.0f - trust * (1.0f - base);
-      for (int c = 0; c < channels; ++c)
-        now.data[c].at(x, y) =
-            alpha * noisy[c].at(x, y) + (1.0f - alpha) * history[static_cast<std::size_t>(c)];
-      now.samples().at(x, y) = std::min(1.0f + trust * samples, most_samples);
-      if (now.has_moments()) {
-        const float l = channels == 1
-                            ? noisy[0].at(x, y)
-                            : luminance(noisy[0].at(x, y), noisy[1].at(x, y), noisy[2].at(x, y));
-        float moment = l;
-        for (int order = 1; order <= 2; ++order, moment *= l)
-          now.moment(order).at(x, y) =
-              alpha * moment + (valid ? (1.0f - alpha) * gather(before.moment(order), taps) : 0.0f);
-      }
-      if (debug != nullptr) {
-        const Channels<float>* motion =
-            by_effect ? &sources.effect->motion : (valid ? &sources.surface->motion : nullptr);
-        (*debug)[kDebugX].at(x, y) = motion != nullptr ? (*motion)[0].at(x, y) : 0.0f;
-        (*debug)[kDebugY].at(x, y) = motion != nullptr ? (*motion)[1].at(x, y) : 0.0f;
-        (*debug)[kDebugFrames].at(x, y) = samples;
-        (*debug)[kDebugTrust].at(x, y) = 1.0f - alpha;
-      }
+    Choice own;
+    float samples[kTapBlock], weight[kTapBlock];
+    for (int x = 0; x < width; x += kTapBlock) {
+      const int count = std::min(kTapBlock, width - x);
+      const AccumulationLanes lanes = choose(sources, rule.rectification, x, y, count, own);
+      const AccumulationBlock block{guides, noisy, before, rule,    lanes, x,
+                                    y,      count, now,    samples, weight};
+      accumulate_block(block);
+      if (debug != nullptr) record(block, sources, *debug);
     }
   });
 }

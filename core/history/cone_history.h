@@ -1,9 +1,9 @@
 #pragma once
 
+#include "core/history/cone_kernel.h"
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
 #include "core/history/surface_history.h"
-#include "core/radiance/cones.h"
 #include "core/spatial/window.h"
 
 namespace holdfast {
@@ -43,12 +43,9 @@ class ConeHistory {
                Channels<float>& noisy);
 
  private:
-  struct Cones;
-  void recall(const Taps* taps, int count, int x0, int y);
-  Cones load(int x, int y) const;
-  void store(const Cones& cones, int k, int x, int y);
-  void correct_pixel(const FramePair& frames, const Taps& taps, const Plane& directions,
-                     const ConeRule& rule, int x, int y, Channels<float>& noisy);
+  ConeRows rows_at(int x, int y, int count);
+  void recall(const Guides& previous, const Taps* taps, const float* const (&normal)[3],
+              const ConeRows& rows) const;
   void spread_out(const Guides& guides, WindowScratch& window);
 
   int colours_ = 1;  ///< of a cone: luminance, or R, G, B

@@ -1,10 +1,9 @@
 #include "core/history/expected_error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "core/kernels/math.h"
+#include "core/history/expected_error_kernel.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
@@ -13,47 +12,22 @@ namespace {
 // Candidates: values, then samples.
 constexpr int kSurface = 0, kShadow = 1, kSamples = 2;
 
-/// What a candidate promises at one pixel.
-struct Estimate {
-  float error = 0;       ///< expected squared error, in units in which a sample's is its variance
-  float correction = 0;  ///< share of the local mean difference to subtract, 0..1
-  float samples = 0;     ///< 0: no candidate
-};
-
-Estimate estimate(float samples, float difference, float variance, float window_spread,
-                  float threshold, const ExpectedErrorRule& rule) {
-  if (!(samples > 0.0f)) return {};
-  const float own = variance / samples;
-  const float noise = (variance + own) * window_spread;
-  const float bias = std::max(difference * difference - threshold * noise, 0.0f);
-  const float share = bias / (bias + noise);
-  const float left = bias * square(1.0f - share) + noise * square(share);
-  return {own + rule.spatial_samples * left, share, samples};
-}
-
-/// The threshold where a shadow moves over its surface by `move` of its penumbra: at rest there is
-/// no reason to expect bias, so that only a large difference counts; the faster, the sooner.
-float threshold_of(float move, const ExpectedErrorRule& rule) {
-  return rule.noise_threshold + rule.slow_threshold * exp_nonpositive(-move / rule.slow_move) +
-         rule.rest_threshold * exp_nonpositive(-move / rule.rest_move);
-}
-
 /// The candidates of every pixel: value and samples of the surface's history, then of the shadow's.
 void gather_candidates(const Guides& guides, const Channels<float>& noisy,
                        const HistorySources& sources, const ComponentHistory& before,
                        BlendScratch& s) {
+  const int width = guides.view.width;
   for_each_row(guides.view.height, [&](int y) {
-    for (int x = 0; x < guides.view.width; ++x) {
-      const auto take = [&](const Taps& taps, int slot) {
-        const bool any = taps.any();
-        const float current = noisy[0].at(x, y);
-        const float value = any ? gather(before.data[0], taps) : current;
-        s.candidates[slot].at(x, y) = value;
-        s.differences[slot].at(x, y) = value - current;
-        s.candidates[kSamples + slot].at(x, y) = any ? gather(before.samples(), taps) : 0.0f;
-      };
-      take(sources.surface->taps[0].at(x, y), kSurface);
-      take(sources.effect != nullptr ? sources.effect->taps[0].at(x, y) : Taps{}, kShadow);
+    const Taps none[kTapBlock] = {};
+    for (int x = 0; x < width; x += kTapBlock) {
+      const int count = std::min(kTapBlock, width - x);
+      for (const int slot : {kSurface, kShadow}) {
+        const Taps* taps = slot == kSurface            ? sources.surface->taps[0].row(y) + x
+                           : sources.effect != nullptr ? sources.effect->taps[0].row(y) + x
+                                                       : none;
+        read_visibility({taps, count, before, noisy[0].row(y) + x, s.candidates[slot].row(y) + x,
+                         s.differences[slot].row(y) + x, s.candidates[kSamples + slot].row(y) + x});
+      }
     }
   });
 }
@@ -69,50 +43,42 @@ struct Blend {
   Channels<float>* debug;
 
   void row(int y) const {
-    const float* variance = sample_variance.row(y);
-    const float* spread = window_spread.row(y);
-    const float* bias[2] = {s.bias[kSurface].row(y), s.bias[kShadow].row(y)};
-    const float* samples_of[2] = {s.candidates[kSamples + kSurface].row(y),
-                                  s.candidates[kSamples + kShadow].row(y)};
-    for (int x = 0; x < noisy.width(); ++x) {
-      int slot = kSurface;
-      const bool shadow_there = samples_of[kShadow][x] > 0.0f;
-      const float threshold =
-          sources.effect != nullptr ? threshold_of(move(x, y), rule) : rule.noise_threshold;
-      Estimate chosen = estimate(samples_of[kSurface][x], bias[kSurface][x], variance[x], spread[x],
-                                 threshold, rule);
-      const Estimate shadow = estimate(samples_of[kShadow][x], bias[kShadow][x], variance[x],
-                                       spread[x], threshold, rule);
-      if (shadow_there &&
-          (chosen.samples <= 0.0f || shadow.error < rule.surface_advantage * chosen.error)) {
-        chosen = shadow;
-        slot = kShadow;
+    float chosen[kTapBlock], history[kTapBlock], weight[kTapBlock];
+    for (int x = 0; x < noisy.width(); x += kTapBlock) {
+      const int count = std::min(kTapBlock, noisy.width() - x);
+      VisibilityBlend block{count,
+                            rule,
+                            noisy[0].row(y) + x,
+                            sample_variance.row(y) + x,
+                            window_spread.row(y) + x,
+                            {},
+                            {},
+                            {},
+                            {},
+                            {},
+                            nullptr,
+                            now.data[0].row(y) + x,
+                            now.samples().row(y) + x,
+                            chosen,
+                            history,
+                            weight};
+      for (const int slot : {kSurface, kShadow}) {
+        block.value[slot] = s.candidates[slot].row(y) + x;
+        block.samples[slot] = s.candidates[kSamples + slot].row(y) + x;
+        block.bias[slot] = s.bias[slot].row(y) + x;
       }
-      float alpha = 1.0f, samples = 1.0f;
-      if (chosen.samples > 0.0f) {
-        const float k = std::min(variance[x] / chosen.error, rule.most_samples - 1.0f);
-        alpha = 1.0f / (1.0f + k);
-        samples = 1.0f / (square(alpha) + square(1.0f - alpha) / std::max(chosen.samples, k));
+      if (sources.effect != nullptr) {
+        for (const int axis : {kMotionX, kMotionY}) {
+          block.shadow_motion[axis] = sources.effect->motion[axis].row(y) + x;
+          block.surface_motion[axis] = sources.surface->motion[axis].row(y) + x;
+        }
+        block.sweep = sources.effect->motion[kMotionSweep].row(y) + x;
       }
-      // A correction may not leave the range of a visibility: 0..1, or what it was.
-      const float given = s.candidates[slot].at(x, y);
-      const float h =
-          std::clamp(given - chosen.correction * bias[slot][x], 0.0f, std::max(given, 1.0f));
-      now.data[0].at(x, y) = alpha * noisy[0].at(x, y) + (1.0f - alpha) * h;
-      now.samples().at(x, y) = std::clamp(samples, 1.0f, rule.most_samples);
-      if (debug != nullptr) record(x, y, slot, chosen.samples, 1.0f - alpha);
+      blend_visibility(block);
+      if (debug == nullptr) continue;
+      for (int i = 0; i < count; ++i)
+        record(x + i, y, chosen[i] > 0.0f ? kShadow : kSurface, history[i], weight[i]);
     }
-  }
-
-  /// Motion of the shadow over its surface at (x, y), in widths of the penumbra and a pixel: what a
-  /// visibility may change by in a frame.
-  float move(int x, int y) const {
-    const Channels<float>&shadow = sources.effect->motion, &surface = sources.surface->motion;
-    const float sweep = shadow[kMotionSweep].at(x, y);
-    if (!sources.effect->taps[0].at(x, y).any()) return sweep;
-    const float slide_px = std::abs(shadow[0].at(x, y) - surface[0].at(x, y)) +
-                           std::abs(shadow[1].at(x, y) - surface[1].at(x, y));
-    return sweep * slide_px / std::max(sweep + slide_px, 1e-9f);
   }
 
   void record(int x, int y, int slot, float samples, float trust) const {

@@ -2,25 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/frame/conventions.h"
-#include "core/history/surface_history.h"
+#include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
 #include "core/kernels/random.h"
-#include "core/motion/glossy_motion.h"
+#include "core/motion/reflect_block.h"
 
 namespace holdfast {
 namespace {
 
-/// One reflection, carried to the previous frame.
-struct Reflection {
-  glm::vec3 point;         ///< s_i, relative to the current camera
-  glm::vec4 hit;           ///< h_i, the same; a direction for sky
-  glm::vec4 previous_hit;  ///< T_h^-1 h_i, relative to the previous camera
-  Receiver receiver;       ///< T_s^-1 s_i and its normal
-  float hit_m;
-  bool at_rest;  ///< camera, surface and hit: the image has not moved, whatever rounding says
+constexpr float kRoughnessTolerance = 0.1f;  // perceptual; ours
+
+/// Receivers that are looked for.
+struct Wanted {
+  FollowedBlock wanted;
+  std::uint32_t id[kFollowBlock];
+  float roughness[kFollowBlock];
+  Taps taps[kFollowBlock];
+};
+
+/// A block of a row on its way to the previous frame.
+struct Lanes : Wanted {
+  ReflectedBlock images;
+  float centre_x[kFollowBlock], centre_y[kFollowBlock];  ///< of the images
+  int surface[kFollowBlock], hit[kFollowBlock];          ///< slots; -1: followed
 };
 
 class GlossyTracer {
@@ -36,97 +41,131 @@ class GlossyTracer {
         pixel_(frames.now.view.pixel_from_relative),
         previous_pixel_(frames.previous.view.pixel_from_relative) {}
 
-  void trace(int x, int y, EffectHistory& out) const {
-    Reflection r;
-    if (!reflection_at(x, y, r)) return out.set(x, y, {}, 0, 0, 0);
-    const float roughness = now_.roughness_at(x, y);
-    const auto centre = project(previous_pixel_,
-                                virtual_image(r.previous_hit, r.receiver.point, r.receiver.normal));
-    if (rule_ == GlossyRule::kStochastic && centre.in_front) {
-      const glm::vec2 offset = sample_offset(x, y, r, roughness);
-      if (try_pixel(x, y, centre.x + offset.x, centre.y + offset.y, r.receiver, roughness, out))
-        return;
+  /// The pixels of a block from (x, y) on.
+  void trace(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
+    find_slots(x, y, count, lanes);
+    std::fill_n(lanes.wanted.found, count, 0.0f);
+    for (int i = 0; i < count; ++i)
+      if (lanes.surface[i] >= 0) follow(lanes.surface[i], lanes.hit[i], x, y, count, lanes);
+    if (rule_ == GlossyRule::kStochastic) {
+      std::copy_n(lanes.wanted.x, count, lanes.centre_x);
+      std::copy_n(lanes.wanted.y, count, lanes.centre_y);
+      scatter(x, y, count, lanes);
     }
-    if (rule_ != GlossyRule::kRelative) {
-      if (centre.in_front && try_pixel(x, y, centre.x, centre.y, r.receiver, roughness, out))
-        return;
-      return out.set(x, y, {}, 0, 0, 0);
-    }
-    trace_relative(x, y, r, roughness, centre, out);
+    std::copy_n(now_.id[0].row(y) + x, count, lanes.id);
+    find_block_taps({previous_, lanes.wanted, lanes.id, count, lanes.taps});
+    drop_foreign(count, lanes);
+    if (rule_ == GlossyRule::kStochastic) look_at_centres(count, lanes);
+    write(x, y, count, lanes, out);
   }
 
  private:
-  bool reflection_at(int x, int y, Reflection& r) const {
-    if (!(now_.depth().at(x, y) > 0.0f)) return false;
-    const glm::vec3 direction(planes_.direction->channel(0).at(x, y),
-                              planes_.direction->channel(1).at(x, y),
-                              planes_.direction->channel(2).at(x, y));
-    const float length = glm::length(direction);
-    r.hit_m = planes_.distance->channel(0).at(x, y);
-    if (!(length > 0.0f) || !std::isfinite(length) || !(r.hit_m >= 0.0f)) return false;
-    const int slot = planes_.id != nullptr ? scene_.slot_of(planes_.id->ids().at(x, y)) : 0;
-    const ObjectMotion<float>& surface = scene_.object(scene_.slot_of(now_.id[0].at(x, y)));
-    const ObjectMotion<float>& hit = scene_.object(slot);
-    if (!surface.traceable || !hit.traceable) return false;
-    r.at_rest = surface.at_rest && hit.at_rest;
-    r.point = now_.position_at(x, y);
-    r.receiver = previous_receiver(now_, surface, x, y);
-    if (std::isfinite(r.hit_m)) {
-      r.hit = glm::vec4(r.point + (r.hit_m / length) * direction, 1.0f);
-      r.previous_hit = hit.carry * r.hit;
-    } else {
-      r.hit = r.previous_hit = glm::vec4(direction / length, 0.0f);
+  void find_slots(int x, int y, int count, Lanes& lanes) const {
+    const float* depth = now_.depth().row(y) + x;
+    const std::uint32_t* id = now_.id[0].row(y) + x;
+    const std::uint32_t* hit_id = planes_.id != nullptr ? planes_.id->ids().row(y) + x : nullptr;
+    std::uint32_t last = 0, last_hit = 0;
+    int slot = scene_.slot_of(last), hit_slot = hit_id != nullptr ? slot : 0;
+    for (int i = 0; i < count; ++i) {
+      if (id[i] != last) slot = scene_.slot_of(last = id[i]);
+      if (hit_id != nullptr && hit_id[i] != last_hit)
+        hit_slot = scene_.slot_of(last_hit = hit_id[i]);
+      lanes.surface[i] = depth[i] > 0.0f ? slot : -1;
+      lanes.hit[i] = hit_slot;
     }
-    return true;
+    for (int i = 0; i < count; ++i) lanes.roughness[i] = now_.roughness_at(x + i, y);
   }
 
-  void trace_relative(int x, int y, const Reflection& r, float roughness,
-                      const PixelPoint<float>& centre, EffectHistory& out) const {
-    const auto image =
-        r.at_rest ? centre : project(pixel_, virtual_image(r.hit, r.point, now_.normal_at(x, y)));
-    if (centre.in_front && image.in_front &&
-        try_pixel(x, y, static_cast<float>(x) + 0.5f + (centre.x - image.x),
-                  static_cast<float>(y) + 0.5f + (centre.y - image.y), r.receiver, roughness, out))
-      return;
-    out.set(x, y, {}, 0, 0, 0);
+  /// Follows the pixels on one object that reflect another.
+  void follow(int surface, int hit, int x, int y, int count, Lanes& lanes) const {
+    const ObjectMotion<float>&of_surface = scene_.object(surface), &of_hit = scene_.object(hit);
+    const bool traceable = of_surface.traceable && of_hit.traceable;
+    // Where all stands still the image has not moved, whatever rounding says.
+    const bool moves = rule_ == GlossyRule::kRelative && !(of_surface.at_rest && of_hit.at_rest);
+    if (traceable) {
+      const BlockPixels pixels(now_, x, y, count);
+      const auto direction = [&](int axis) { return planes_.direction->channel(axis).row(y) + x; };
+      follow_reflection({pixels,
+                         of_surface,
+                         of_hit,
+                         pixel_,
+                         previous_pixel_,
+                         {direction(0), direction(1), direction(2)},
+                         planes_.distance->channel(0).row(y) + x,
+                         moves,
+                         lanes.images});
+    }
+    for (int i = 0; i < count; ++i) {
+      if (lanes.surface[i] != surface || lanes.hit[i] != hit) continue;
+      lanes.surface[i] = -1;
+      if (!traceable || lanes.images.then.found[i] == 0.0f) continue;
+      copy_lane(lanes.images.then, i, lanes.wanted, i);
+      if (rule_ != GlossyRule::kRelative) continue;
+      const float moved_x = moves ? lanes.images.then.x[i] - lanes.images.x[i] : 0.0f;
+      const float moved_y = moves ? lanes.images.then.y[i] - lanes.images.y[i] : 0.0f;
+      lanes.wanted.x[i] = static_cast<float>(x + i) + 0.5f + moved_x;
+      lanes.wanted.y[i] = static_cast<float>(y) + 0.5f + moved_y;
+    }
   }
 
-  GlossySpread<float> spread_of(const Reflection& r, float roughness) const {
-    const float view_m = glm::length(r.receiver.point);
-    const float cosine =
-        std::abs(glm::dot(r.receiver.point, r.receiver.normal)) / std::max(view_m, 1e-20f);
-    return glossy_spread(1.0f / static_cast<float>(previous_.view.pixel_angle),
-                         ggx_alpha_from_roughness(roughness), view_m, r.hit_m, cosine);
+  /// Draws a place around each that is wanted.
+  void scatter(int x, int y, int count, Lanes& lanes) const {
+    float u[kFollowBlock], v[kFollowBlock];
+    for (int i = 0; i < count; ++i) {
+      const std::uint64_t pixel =
+          (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x + i);
+      const UniformPair random = uniform_pair(frame_key_ ^ mix_bits(pixel));
+      u[i] = random.u;
+      v[i] = random.v;
+    }
+    spread_reflection({previous_pixel_, 1.0f / static_cast<float>(previous_.view.pixel_angle),
+                       lanes.roughness, planes_.distance->channel(0).row(y) + x, u, v, lanes.wanted,
+                       count, lanes.wanted.x, lanes.wanted.y});
   }
 
-  /// A draw from N(0, Sigma) in pixels of the previous frame.
-  glm::vec2 sample_offset(int x, int y, const Reflection& r, float roughness) const {
-    const auto spread = spread_of(r, roughness);
-    const glm::vec2 along = incidence_axis(previous_pixel_, r.receiver.point, r.receiver.normal);
-    const std::uint64_t pixel =
-        (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
-    const UniformPair random = uniform_pair(frame_key_ ^ mix_bits(pixel));
-    const float radius = std::sqrt(-2.0f * std::log(random.u));  // Box-Muller
-    const float angle = 2.0f * std::numbers::pi_v<float> * random.v;
-    return radius * (std::cos(angle) * spread.in_plane * along +
-                     std::sin(angle) * spread.out_of_plane * glm::vec2(-along.y, along.x));
+  /// Takes the taps from receivers of another roughness.
+  void drop_foreign(int count, Wanted& lanes) const {
+    if (!previous_.roughness || !now_.roughness) return;
+    const ChannelView<const float> roughness = previous_.roughness[0];
+    for (int i = 0; i < count; ++i)
+      if (!(std::abs(gather(roughness, lanes.taps[i]) - lanes.roughness[i]) <= kRoughnessTolerance))
+        lanes.taps[i] = Taps{};
   }
 
-  bool try_pixel(int x, int y, float px, float py, const Receiver& receiver, float roughness,
-                 EffectHistory& out) const {
-    const Taps taps = find_taps(previous_, px, py, receiver);
-    if (!taps.any() || !same_roughness(taps, roughness)) return false;
-    out.set(x, y, taps, px - (static_cast<float>(x) + 0.5f), py - (static_cast<float>(y) + 0.5f),
-            1.0f);
-    return true;
+  /// Looks at the images themselves for receivers that were not found near them, which are moved
+  /// together so that no others are looked for.
+  void look_at_centres(int count, Lanes& lanes) const {
+    Wanted lost;
+    int source[kFollowBlock], left = 0;
+    for (int i = 0; i < count; ++i) {
+      if (lanes.wanted.found[i] == 0.0f || lanes.taps[i].any()) continue;
+      lanes.wanted.x[i] = lanes.centre_x[i];
+      lanes.wanted.y[i] = lanes.centre_y[i];
+      copy_lane(lanes.wanted, i, lost.wanted, left);
+      lost.id[left] = lanes.id[i];
+      lost.roughness[left] = lanes.roughness[i];
+      source[left++] = i;
+    }
+    if (left == 0) return;
+    find_block_taps({previous_, lost.wanted, lost.id, left, lost.taps});
+    drop_foreign(left, lost);
+    for (int k = 0; k < left; ++k) lanes.taps[source[k]] = lost.taps[k];
   }
 
-  bool same_roughness(const Taps& taps, float roughness) const {
-    if (!previous_.roughness || !now_.roughness) return true;
-    return std::abs(gather(previous_.roughness[0], taps) - roughness) <= kRoughnessTolerance;
+  /// Writes the history of the pixels from (x, y) on: none where there are no taps.
+  void write(int x, int y, int count, const Lanes& lanes, EffectHistory& out) const {
+    Taps* taps = out.taps[0].row(y) + x;
+    float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
+          *trust = out.motion[kMotionTrust].row(y) + x;
+    const float row = static_cast<float>(y) + 0.5f;
+    for (int i = 0; i < count; ++i) {
+      const bool any = lanes.wanted.found[i] > 0.0f && lanes.taps[i].any();
+      taps[i] = any ? lanes.taps[i] : Taps{};
+      motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(x + i) + 0.5f) : 0.0f;
+      motion_y[i] = any ? lanes.wanted.y[i] - row : 0.0f;
+      trust[i] = any ? 1.0f : 0.0f;
+    }
   }
-
-  static constexpr float kRoughnessTolerance = 0.1f;  // perceptual; ours
 
   const Guides& now_;
   const Guides& previous_;
@@ -142,8 +181,11 @@ class GlossyTracer {
 void trace_glossy_history(const FramePair& frames, const GlossyPlanes& planes, GlossyRule rule,
                           const FrameKey& key, EffectHistory& out) {
   const GlossyTracer tracer(frames, planes, rule, key);
+  const int width = frames.now.view.width;
   for_each_row(frames.now.view.height, [&](int y) {
-    for (int x = 0; x < frames.now.view.width; ++x) tracer.trace(x, y, out);
+    Lanes lanes{};
+    for (int x = 0; x < width; x += kFollowBlock)
+      tracer.trace(x, y, std::min(kFollowBlock, width - x), lanes, out);
   });
 }
 

@@ -1,78 +1,17 @@
 #include "core/history/radiance_blend.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
-#include "core/kernels/math.h"
+#include "core/history/radiance_blend_kernel.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
 namespace {
 
 constexpr int kStep = RadianceBlendScratch::kPerCandidate;
-constexpr int kSamples = 3;  // of a candidate
-constexpr int kSquare = 3;   // of a difference
 
-using Colour = std::array<float, 3>;
-
-float norm2(const Colour& c) { return square(c[0]) + square(c[1]) + square(c[2]); }
-
-/// A measured difference of history to the frame, and its variance, summed over channels.
-struct Difference {
-  Colour mean{};
-  float variance = 0;
-};
-
-/// What a candidate promises at one pixel.
-struct Promise {
-  float samples = 0;     ///< 0: no candidate
-  float error = 0;       ///< expected squared error
-  float variance = 0;    ///< of one sample
-  float correction = 0;  ///< share of `bias` to subtract, 0..1
-  Difference bias;       ///< the difference that decides
-  Difference residual;   ///< that of this frame joined with those before
-};
-
-/// Joins this frame's difference with the mean of those before, a recursive mean of weight `beta`
-/// that starts as the plain mean.
-Difference join(const Difference& before, const Difference& now, float beta) {
-  if (!(before.variance > 0.0f)) return now;
-  const float b = std::max(beta, before.variance / (before.variance + now.variance));
-  Difference joined;
-  for (std::size_t c = 0; c < 3; ++c)
-    joined.mean[c] = (1.0f - b) * before.mean[c] + b * now.mean[c];
-  joined.variance = square(1.0f - b) * before.variance + square(b) * now.variance;
-  return joined;
-}
-
-float excess(const Difference& d, float threshold) {
-  return std::max(norm2(d.mean) - threshold * d.variance, 0.0f);
-}
-
-Promise promise_of(float samples, const Colour& d, float square_mean, float spread,
-                   const Difference& before, const RadianceBlendRule& rule, bool at_rest) {
-  if (!(samples > 0.0f)) return {};
-  Promise p;
-  p.samples = samples;
-  // The difference also holds the candidate's own noise.
-  const float floor = 1e-6f * square_mean + 1e-20f;
-  const float of_difference = std::max(square_mean - norm2(d), floor);
-  p.variance = of_difference * samples / (samples + 1.0f);
-  const Difference now{d, of_difference * spread};
-  p.residual = join(before, now, rule.residual_beta);
-  const float sudden = excess(now, at_rest ? rule.rest_sudden_threshold : rule.sudden_threshold);
-  const float lasting = excess(p.residual, at_rest ? rule.rest_threshold : rule.noise_threshold);
-  p.bias = sudden > lasting ? now : p.residual;
-  const float bias = std::max(sudden, lasting), noise = p.bias.variance;
-  p.correction = bias / (bias + noise);
-  const float left = bias * square(1.0f - p.correction) + noise * square(p.correction);
-  p.error = p.variance / samples + rule.spatial_samples * left;
-  return p;
-}
-
-/// The pass over one frame: gathers the candidates, chooses one for each pixel, and blends.
+/// The candidates of each pixel, and what they are blended with.
 struct RadianceBlend {
   const Channels<float>& noisy;
   const HistorySources& sources;
@@ -91,80 +30,60 @@ struct RadianceBlend {
     return !sources.surface->taps[0].at(x, y).any();
   }
 
-  const Taps& taps_of(int k, int x, int y) const {
-    return (follows_effect(k, x, y) ? sources.effect->taps : sources.surface->taps)[0].at(x, y);
+  /// Taps of candidate `k` from (x, y) on; written to `own` where they are of both kinds.
+  const Taps* taps_of(int k, int x, int y, int count, Taps* own) const {
+    const Taps* surface = sources.surface->taps[0].row(y) + x;
+    if (sources.effect == nullptr) return surface;
+    const Taps* effect = sources.effect->taps[0].row(y) + x;
+    if (!rule.effect_substitutes) return k == 1 ? effect : surface;
+    for (int i = 0; i < count; ++i) own[i] = surface[i].any() ? surface[i] : effect[i];
+    return own;
   }
 
-  void gather_row(int k, int y) const {
-    for (int x = 0; x < noisy.width(); ++x) {
-      const Taps& t = taps_of(k, x, y);
-      const bool any = t.any();
-      float sum = 0;
-      for (int c = 0; c < 3; ++c) {
-        const float current = noisy[c].at(x, y);
-        const float value = any ? gather(before.data[c], t) : current;
-        s.candidates[kStep * k + c].at(x, y) = value;
-        s.differences[c].at(x, y) = value - current;
-        sum += square(value - current);
-      }
-      s.candidates[kStep * k + kSamples].at(x, y) = any ? gather(before.samples(), t) : 0.0f;
-      s.differences[kSquare].at(x, y) = sum;
+  void read_row(int k, int y) const {
+    Taps own[kTapBlock];
+    for (int x = 0; x < noisy.width(); x += kTapBlock) {
+      const int count = std::min(kTapBlock, noisy.width() - x);
+      read_candidate({taps_of(k, x, y, count, own), k, x, y, count, noisy, before, s});
     }
-  }
-
-  Promise promise(int k, int x, int y, float spread) const {
-    const float n = s.candidates[kStep * k + kSamples].at(x, y);
-    if (!(n > 0.0f)) return {};
-    const Taps& taps = taps_of(k, x, y);
-    Colour d;
-    Difference residual_before;
-    for (int c = 0; c < 3; ++c) {
-      d[static_cast<std::size_t>(c)] = s.means[kStep * k + c].at(x, y);
-      residual_before.mean[static_cast<std::size_t>(c)] = gather(before.residual(c), taps);
-    }
-    residual_before.variance = gather(before.residual(3), taps);
-    return promise_of(n, d, s.means[kStep * k + kSquare].at(x, y), spread, residual_before, rule,
-                      at_rest);
   }
 
   void blend_row(int y, const float* spread) const {
-    for (int x = 0; x < noisy.width(); ++x) {
-      int k = 0;
-      Promise chosen = promise(0, x, y, spread[x]);
-      if (candidates() == 2) {
-        const Promise effect = promise(1, x, y, spread[x]);
-        if (effect.samples > 0.0f && (chosen.samples <= 0.0f || effect.error < chosen.error)) {
-          chosen = effect;
-          k = 1;
-        }
-      }
-      blend(k, chosen, x, y);
+    Taps own[kTapBlock];
+    float chosen[kTapBlock], samples[kTapBlock], weight[kTapBlock];
+    for (int x = 0; x < noisy.width(); x += kTapBlock) {
+      const int count = std::min(kTapBlock, noisy.width() - x);
+      const Taps* first = taps_of(0, x, y, count, own);
+      const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
+      blend_candidates({{first, second},
+                        candidates(),
+                        x,
+                        y,
+                        count,
+                        noisy,
+                        before,
+                        s,
+                        spread + x,
+                        rule,
+                        at_rest ? rule.rest_sudden_threshold : rule.sudden_threshold,
+                        at_rest ? rule.rest_threshold : rule.noise_threshold,
+                        now,
+                        chosen,
+                        samples,
+                        weight});
+      if (debug == nullptr) continue;
+      for (int i = 0; i < count; ++i)
+        record(x + i, y, chosen[i] > 0.0f ? 1 : 0, samples[i], weight[i]);
     }
   }
 
-  void blend(int k, const Promise& chosen, int x, int y) const {
-    float weight = 0.0f;
-    if (chosen.samples > 0.0f)
-      weight = std::min(chosen.variance / chosen.error, rule.most_samples - 1.0f);
-    const float alpha = 1.0f / (1.0f + weight);
-    // What is subtracted from the history, or replaced by the frame, is no longer wrong with it.
-    const float kept = (1.0f - alpha) * (1.0f - chosen.correction);
-    for (int c = 0; c < 3; ++c) {
-      const auto i = static_cast<std::size_t>(c);
-      const float h =
-          s.candidates[kStep * k + c].at(x, y) - chosen.correction * chosen.bias.mean[i];
-      now.data[c].at(x, y) = alpha * noisy[c].at(x, y) + (1.0f - alpha) * std::max(h, 0.0f);
-      now.residual(c).at(x, y) = kept * chosen.residual.mean[i];
-    }
-    now.residual(3).at(x, y) = chosen.residual.variance;
-    now.samples().at(x, y) = 1.0f + weight;
-    if (debug == nullptr) return;
+  void record(int x, int y, int k, float samples, float weight) const {
     const Channels<float>& motion =
         follows_effect(k, x, y) ? sources.effect->motion : sources.surface->motion;
     (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
     (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
-    (*debug)[kDebugFrames].at(x, y) = chosen.samples;
-    (*debug)[kDebugTrust].at(x, y) = 1.0f - alpha;
+    (*debug)[kDebugFrames].at(x, y) = samples;
+    (*debug)[kDebugTrust].at(x, y) = weight;
   }
 };
 
@@ -178,7 +97,7 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
   const RadianceBlend pass{noisy, sources, rule, at_rest, before, s, now, debug};
   ChannelView<const float> spread;
   for (int k = 0; k < pass.candidates(); ++k) {
-    for_each_row(guides.view.height, [&](int y) { pass.gather_row(k, y); });
+    for_each_row(guides.view.height, [&](int y) { pass.read_row(k, y); });
     spread = window_means(guides, s.differences, kStep, rule.window_step, window, s.means,
                           kStep * k, nullptr, footprint);
   }

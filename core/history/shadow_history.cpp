@@ -1,10 +1,11 @@
 #include "core/history/shadow_history.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
-#include "core/motion/shadow_motion.h"
+#include "core/motion/shadow_falloff.h"
+#include "core/motion/shadow_field.h"
 
 namespace holdfast {
 namespace {
@@ -12,25 +13,6 @@ namespace {
 constexpr float kNoBlockerSweep = 1e6f;  // where nothing blocks, a visibility is what is seen now
 constexpr float kLeastValid =
     1e-3f;  // share of blocked samples nearby below which none is borrowed
-
-/// TRMV's trust in the vector that leads to previous pixel (px, py): compares the receiver's plane
-/// with the surface seen there. 0 where there is none.
-float falloff_at(const Guides& previous, const Receiver& receiver, float px, float py) {
-  const int x = static_cast<int>(std::floor(px)), y = static_cast<int>(std::floor(py));
-  if (x < 0 || y < 0 || x >= previous.view.width || y >= previous.view.height ||
-      !(previous.depth().at(x, y) > 0.0f))
-    return 0.0f;
-  // The receiver's plane along the ray of (px, py): X(d) is affine in d.
-  const glm::vec3 start = previous.rays.position(px, py, 0.0f);
-  const glm::vec3 ray = previous.rays.position(px, py, 1.0f) - start;
-  const float facing = glm::dot(ray, receiver.normal);
-  if (!(std::abs(facing) > 1e-6f)) return 0.0f;
-  const float depth = glm::dot(receiver.point - start, receiver.normal) / facing;
-  const float footprint = static_cast<float>(previous.view.pixel_angle) *
-                          (previous.rays.near_weight + previous.rays.far_weight * depth);
-  return planarity_falloff(start + depth * ray, previous.position_at(x, y), receiver.normal,
-                           footprint);
-}
 
 /// A block of a row on its way to the previous frame.
 struct Lanes {
@@ -52,35 +34,41 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
     any |= lanes.wanted[i] != 0;
   }
   if (!any) return false;
+  std::uint32_t last_id = 0;
+  int last_slot = frames.scene.slot_of(last_id);
   for (int i = 0; i < count; ++i) {
     const bool own = rule == ShadowRule::kPaper && own_ratio[i] > 0.0f;
     lanes.own[i] = own;
     lanes.ratio[i] = own ? own_ratio[i] : ratio[i] / (lanes.wanted[i] ? valid[i] : 1.0f);
     if (!lanes.wanted[i]) continue;
-    lanes.surface[i] = frames.scene.slot_of(id[i]);
+    if (id[i] != last_id) last_slot = frames.scene.slot_of(last_id = id[i]);
+    lanes.surface[i] = last_slot;
     lanes.occluder[i] =
         own ? tracer.own_blocker_slot(x + i, y) : tracer.nearest_blocker_slot(x + i, y);
   }
   return true;
 }
 
-/// Writes the history of pixel (x, y), whose shadow was at lane i of `found`.
-void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int i, int x, int y,
-          EffectHistory& out) {
-  out.motion[kMotionSweep].at(x, y) = found.sweep[i];
-  if (found.found[i] == 0.0f) return;
-  const Receiver receiver{{found.point[0][i], found.point[1][i], found.point[2][i]},
-                          {found.normal[0][i], found.normal[1][i], found.normal[2][i]},
-                          frames.now.id[0].at(x, y)};
+/// Writes the history of the pixels from (x, y) on whose shadows are `found`.
+void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int x, int y,
+          int count, EffectHistory& out) {
   const bool paper = rule == ShadowRule::kPaper;
-  const Taps taps = paper ? find_taps_on_any_surface(frames.previous, found.x[i], found.y[i])
-                          : find_taps(frames.previous, found.x[i], found.y[i], receiver);
-  out.taps[0].at(x, y) = taps;
-  out.motion[kMotionX].at(x, y) = found.x[i] - (static_cast<float>(x) + 0.5f);
-  out.motion[kMotionY].at(x, y) = found.y[i] - (static_cast<float>(y) + 0.5f);
-  if (taps.any())
-    out.motion[kMotionTrust].at(x, y) =
-        paper ? falloff_at(frames.previous, receiver, found.x[i], found.y[i]) : 1.0f;
+  Taps taps[kFollowBlock];
+  const std::uint32_t* id = frames.now.id[0].row(y) + x;
+  const TapSearch search{frames.previous, found, id, count, taps};
+  if (paper)
+    find_block_taps_on_any_surface(search);
+  else
+    find_block_taps(search);
+  float trust[kFollowBlock];
+  if (paper)
+    shadow_falloff({frames.previous, found, count, trust});
+  else
+    std::fill_n(trust, count, 1.0f);
+  for (int i = 0; i < count; ++i)
+    if (found.found[i] != 0.0f)
+      out.set(x + i, y, taps[i], found.x[i] - (static_cast<float>(x + i) + 0.5f),
+              found.y[i] - (static_cast<float>(y) + 0.5f), taps[i].any() ? trust[i] : 0.0f);
 }
 
 }  // namespace
@@ -91,7 +79,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     Lanes lanes;
-    FollowedBlock found;
+    FollowedBlock found{}, followed{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
@@ -101,6 +89,7 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
       if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
                   own_ratio.row(y) + x, lanes))
         continue;
+      std::fill_n(followed.found, pixels.count, 0.0f);
       for (int i = 0; i < pixels.count; ++i) {
         if (!lanes.wanted[i]) continue;
         const int surface = lanes.surface[i], occluder = lanes.occluder[i];
@@ -111,9 +100,11 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
           if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
             continue;
           lanes.wanted[k] = 0;
-          take(frames, rule, found, k, x + k, y, out);
+          out.motion[kMotionSweep].at(x + k, y) = found.sweep[k];
+          if (found.found[k] != 0.0f) copy_lane(found, k, followed, k);
         }
       }
+      take(frames, rule, followed, x, y, pixels.count, out);
     }
   });
 }

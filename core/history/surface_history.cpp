@@ -3,27 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
-#include "core/motion/follow_block.h"
 
 namespace holdfast {
 namespace {
 
-/// The taps of a pixel whose receiver was at lane i of `found`, and its motion. `same`: both frames
-/// show the same surface at (x, y).
-void take(const FramePair& frames, const FollowedBlock& found, int i, bool same, int x, int y,
-          SurfaceHistory& out) {
-  if (found.found[i] == 0.0f) return;
-  const Receiver receiver{{found.point[0][i], found.point[1][i], found.point[2][i]},
-                          {found.normal[0][i], found.normal[1][i], found.normal[2][i]},
-                          frames.now.id[0].at(x, y)};
-  const float motion_x = found.x[i] - (static_cast<float>(x) + 0.5f);
-  const float motion_y = found.y[i] - (static_cast<float>(y) + 0.5f);
-  out.taps[0].at(x, y) = motion_x == 0.0f && motion_y == 0.0f && same
-                             ? identity_taps(frames.previous, x, y)
-                             : find_taps(frames.previous, found.x[i], found.y[i], receiver);
-  out.motion[0].at(x, y) = motion_x;
-  out.motion[1].at(x, y) = motion_y;
+/// The taps and the motion of the pixels from (x, y) on that are `found`. `same`: both frames show
+/// the same surface at a pixel.
+void take(const FramePair& frames, const FollowedBlock& found, const std::uint8_t* same, int x,
+          int y, int count, SurfaceHistory& out) {
+  Taps taps[kFollowBlock];
+  find_block_taps({frames.previous, found, frames.now.id[0].row(y) + x, count, taps});
+  for (int i = 0; i < count; ++i) {
+    if (found.found[i] == 0.0f) continue;
+    const float motion_x = found.x[i] - (static_cast<float>(x + i) + 0.5f);
+    const float motion_y = found.y[i] - (static_cast<float>(y) + 0.5f);
+    out.taps[0].at(x + i, y) = motion_x == 0.0f && motion_y == 0.0f && same[i] != 0
+                                   ? identity_taps(frames.previous, x + i, y)
+                                   : taps[i];
+    out.motion[0].at(x + i, y) = motion_x;
+    out.motion[1].at(x + i, y) = motion_y;
+  }
 }
 
 /// Puts the client's motion in place of the rigid one.
@@ -46,10 +47,10 @@ void stay(int x, int y, int count, FollowedBlock& found) {
   }
 }
 
-/// The row's pixels from x on that lie on `object`, whose `wanted` is cleared.
-void trace_block(const FramePair& frames, const Plane* given_motion, int slot, const int* slots,
-                 const std::uint8_t* same, const BlockPixels& pixels, int x, int y,
-                 std::uint8_t* wanted, SurfaceHistory& out) {
+/// Follows the row's pixels from x on that lie on `object`, whose `wanted` is cleared.
+void follow_object(const FramePair& frames, const Plane* given_motion, int slot, const int* slots,
+                   const BlockPixels& pixels, int x, int y, std::uint8_t* wanted,
+                   FollowedBlock& followed) {
   const ObjectMotion<float>& object = frames.scene.object(slot);
   FollowedBlock found;
   if (object.traceable || given_motion != nullptr) {
@@ -64,7 +65,7 @@ void trace_block(const FramePair& frames, const Plane* given_motion, int slot, c
   for (int i = 0; i < pixels.count; ++i) {
     if (!wanted[i] || slots[i] != slot) continue;
     wanted[i] = 0;
-    take(frames, found, i, same[i] != 0, x + i, y, out);
+    if (found.found[i] != 0.0f) copy_lane(found, i, followed, i);
   }
 }
 
@@ -104,6 +105,7 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
   for_each_row(now.view.height, [&](int y) {
     int slots[kFollowBlock] = {};
     std::uint8_t same[kFollowBlock] = {}, wanted[kFollowBlock];
+    FollowedBlock followed{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       for (int c = 0; c < 2; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
@@ -113,9 +115,11 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
       same_surface_block(now, frames.previous, x, y, pixels.count, same);
       if (keep_still(frames, given_motion == nullptr, slots, same, x, y, pixels.count, wanted, out))
         continue;
+      std::fill_n(followed.found, pixels.count, 0.0f);
       for (int i = 0; i < pixels.count; ++i)
         if (wanted[i])
-          trace_block(frames, given_motion, slots[i], slots, same, pixels, x, y, wanted, out);
+          follow_object(frames, given_motion, slots[i], slots, pixels, x, y, wanted, followed);
+      take(frames, followed, same, x, y, pixels.count, out);
     }
   });
 }

@@ -53,6 +53,34 @@ Taps identity_taps(const Guides& previous, int x, int y) {
 
 namespace {
 
+/// True for previous pixels on any surface.
+struct SurfaceTest {
+  const Guides& previous;
+  bool operator()(int x, int y) const {
+    return x >= 0 && y >= 0 && x < previous.view.width && y < previous.view.height &&
+           previous.depth().at(x, y) > 0.0f;
+  }
+};
+
+/// The valid pixel of the 3x3 neighbourhood that is nearest to (x, y).
+template <class Valid>
+Taps nearest_taps(const Guides& previous, float x, float y, const Valid& valid) {
+  const int nx = static_cast<int>(std::floor(x)), ny = static_cast<int>(std::floor(y));
+  float best = 1e9f;
+  int best_x = 0, best_y = 0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i) {
+      const float dx = static_cast<float>(nx + i) - (x - 0.5f);
+      const float dy = static_cast<float>(ny + j) - (y - 0.5f);
+      const float distance = dx * dx + dy * dy;
+      if (distance >= best || !valid(nx + i, ny + j)) continue;
+      best = distance;
+      best_x = nx + i;
+      best_y = ny + j;
+    }
+  return best < 1e9f ? identity_taps(previous, best_x, best_y) : Taps{};
+}
+
 template <class Valid>
 Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid) {
   const int width = previous.view.width, height = previous.view.height;
@@ -71,29 +99,13 @@ Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid)
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
       const float w = (i ? fx : 1.0f - fx) * (j ? fy : 1.0f - fy);
-      if (w < 1e-3f || !valid(ix + i, iy + j)) continue;
+      if (w < kLeastTapWeight || !valid(ix + i, iy + j)) continue;
       taps.weight[2 * (iy + j - by) + (ix + i - bx)] += w;
       sum += w;
     }
-  if (sum > 0.01f) {
-    for (float& w : taps.weight) w /= sum;
-    return taps;
-  }
-
-  // Rescue: the valid pixel of the 3x3 neighbourhood that is nearest to (x, y).
-  const int nx = static_cast<int>(std::floor(x)), ny = static_cast<int>(std::floor(y));
-  float best = 1e9f;
-  int best_x = 0, best_y = 0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i) {
-      const float dx = static_cast<float>(nx + i) - cx, dy = static_cast<float>(ny + j) - cy;
-      const float distance = dx * dx + dy * dy;
-      if (distance >= best || !valid(nx + i, ny + j)) continue;
-      best = distance;
-      best_x = nx + i;
-      best_y = ny + j;
-    }
-  return best < 1e9f ? identity_taps(previous, best_x, best_y) : Taps{};
+  if (!(sum > kLeastTapSum)) return nearest_taps(previous, x, y, valid);
+  for (float& w : taps.weight) w /= sum;
+  return taps;
 }
 
 }  // namespace
@@ -133,10 +145,15 @@ void same_surface_block(const Guides& now, const Guides& previous, int x, int y,
 }
 
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y) {
-  return bilinear_taps(previous, x, y, [&](int tx, int ty) {
-    return tx >= 0 && ty >= 0 && tx < previous.view.width && ty < previous.view.height &&
-           previous.depth().at(tx, ty) > 0.0f;
-  });
+  return bilinear_taps(previous, x, y, SurfaceTest{previous});
+}
+
+Taps rescue_taps(const Guides& previous, float x, float y, const Receiver& receiver) {
+  return nearest_taps(previous, x, y, TapTest(previous, receiver));
+}
+
+Taps rescue_taps_on_any_surface(const Guides& previous, float x, float y) {
+  return nearest_taps(previous, x, y, SurfaceTest{previous});
 }
 
 }  // namespace holdfast

@@ -25,6 +25,8 @@ struct Receiver {
 /// Rules of tap validity.
 inline constexpr float kTapPlaneTolerancePx = 2.0f;  // footprints off the receiver's plane; ours
 inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
+inline constexpr float kLeastTapWeight = 1e-3f;      // of one tap, below which it is left out
+inline constexpr float kLeastTapSum = 0.01f;         // of the valid taps, below which they are lost
 
 /// Finds taps around previous pixel position (x, y): the 2x2 bilinear neighbourhood, each tap
 /// tested on its own (inside the image, same id, on the receiver's plane, similar normal) and
@@ -45,6 +47,10 @@ void same_surface_block(const Guides& now, const Guides& previous, int x, int y,
 
 /// As find_taps, where any surface inside the image is valid.
 Taps find_taps_on_any_surface(const Guides& previous, float x, float y);
+
+/// The last resort of both: the nearest valid pixel of the 3x3 neighbourhood of (x, y), or none.
+Taps rescue_taps(const Guides& previous, float x, float y, const Receiver& receiver);
+Taps rescue_taps_on_any_surface(const Guides& previous, float x, float y);
 
 /// Taps at pixel (x, y) itself, weight 1.
 Taps identity_taps(const Guides& previous, int x, int y);

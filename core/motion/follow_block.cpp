@@ -6,18 +6,6 @@
 namespace holdfast {
 namespace {
 
-HOLDFAST_INLINE Float3 rotated(const Affine& m, const Float3& n) {
-  const Float3 r{dot(m.x, n), dot(m.y, n), dot(m.z, n)};
-  const float inverse = 1.0f / __builtin_sqrtf(dot(r, r));
-  return {r.x * inverse, r.y * inverse, r.z * inverse};
-}
-
-HOLDFAST_INLINE void store(float (*to)[kFollowBlock], int i, const Float3& v) {
-  to[0][i] = v.x;
-  to[1][i] = v.y;
-  to[2][i] = v.z;
-}
-
 /// The vector whose product with a displacement counts it in widths of the half axis.
 HOLDFAST_INLINE Float3 per_width(const glm::vec3& half_axis) {
   const float x = half_axis.x, y = half_axis.y, z = half_axis.z;

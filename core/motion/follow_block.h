@@ -31,6 +31,17 @@ struct FollowedBlock {
                               ///< it
 };
 
+/// Copies lane i to lane k, but for the sweep.
+inline void copy_lane(const FollowedBlock& from, int i, FollowedBlock& to, int k) {
+  to.x[k] = from.x[i];
+  to.y[k] = from.y[i];
+  to.found[k] = from.found[i];
+  for (int axis = 0; axis < 3; ++axis) {
+    to.point[axis][k] = from.point[axis][i];
+    to.normal[axis][k] = from.normal[axis][i];
+  }
+}
+
 /// x_{i-1} = P_{i-1}(T_s^{-1} s_i) for pixels of one object.
 struct SurfaceFollow {
   const BlockPixels& pixels;

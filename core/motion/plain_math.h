@@ -36,6 +36,20 @@ HOLDFAST_INLINE Float3 carried(const Affine& m, const Float3& p) {
   return {dot(m.x, p) + m.x0, dot(m.y, p) + m.y0, dot(m.z, p) + m.z0};
 }
 
+/// A normal turned by `rotate` of ObjectMotion.
+HOLDFAST_INLINE Float3 rotated(const Affine& m, const Float3& n) {
+  const Float3 r{dot(m.x, n), dot(m.y, n), dot(m.z, n)};
+  const float inverse = 1.0f / __builtin_sqrtf(dot(r, r));
+  return {r.x * inverse, r.y * inverse, r.z * inverse};
+}
+
+/// Writes lane i.
+HOLDFAST_INLINE void store(float (*to)[kFollowBlock], int i, const Float3& v) {
+  to[0][i] = v.x;
+  to[1][i] = v.y;
+  to[2][i] = v.z;
+}
+
 struct Projection {
   Affine rows;  ///< x w, y w, depth
   Float3 w;
@@ -46,11 +60,13 @@ HOLDFAST_INLINE Projection projection_of(const glm::mat4& m) {
   return {affine_of(m), {m[0].w, m[1].w, m[2].w}, m[3].w};
 }
 
-/// `project` of view_geometry.h.
-HOLDFAST_INLINE void project_to(const Projection& m, const Float3& point, bool valid, float& x,
-                                float& y, float& found) {
-  const Float3 h = carried(m.rows, point);
-  const float w = dot(m.w, point) + m.w0;
+/// `project` of view_geometry.h, for a point (w = 1) or a direction (w = 0).
+HOLDFAST_INLINE void project_to(const Projection& m, const Float3& point, float point_w, bool valid,
+                                float& x, float& y, float& found) {
+  const Float3 h{dot(m.rows.x, point) + point_w * m.rows.x0,
+                 dot(m.rows.y, point) + point_w * m.rows.y0,
+                 dot(m.rows.z, point) + point_w * m.rows.z0};
+  const float w = dot(m.w, point) + point_w * m.w0;
   const float front = valid ? min_of(w, h.z) : 0.0f;
   const float inverse = 1.0f / (front > 0.0f ? w : 1.0f);
   const float px = h.x * inverse, py = h.y * inverse;
@@ -59,6 +75,11 @@ HOLDFAST_INLINE void project_to(const Projection& m, const Float3& point, bool v
   x = ok ? px : 0.0f;
   y = ok ? py : 0.0f;
   found = ok ? 1.0f : 0.0f;
+}
+
+HOLDFAST_INLINE void project_to(const Projection& m, const Float3& point, bool valid, float& x,
+                                float& y, float& found) {
+  project_to(m, point, 1.0f, valid, x, y, found);
 }
 
 /// Position of pixel i of a block, relative to the camera, metres.

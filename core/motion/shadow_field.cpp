@@ -20,6 +20,8 @@ constexpr float kPixelVariance = 0.5f;        // px^2
 constexpr int kBlockerSearchRadius = 3;  // px; the window of the local means
 constexpr int kBlockerSearchSteps = (2 * kBlockerSearchRadius + 1) * (2 * kBlockerSearchRadius + 1);
 
+constexpr float kFarthest = std::numeric_limits<float>::max();
+
 struct SearchStep {
   int x, y;
 };
@@ -49,7 +51,7 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
       distance_(planes.distance->channel(0)),
       u_(planes.sample->channel(0)),
       v_(planes.sample->channel(1)),
-      id_(planes.id) {
+      id_(planes.id != nullptr ? planes.id->ids() : ChannelView<const std::uint32_t>{}) {
   const SceneMotion::LightMotion motion = scene.light(light.id);
   relative_from_light_ = glm::mat4(motion.relative_from_light);
   previous_relative_from_light_ = glm::mat4(motion.previous_relative_from_light);
@@ -60,9 +62,9 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
   previous_pixel_ = glm::mat4(scene.previous_view().pixel_from_relative);
 }
 
-bool ShadowTracer::blocked(int x, int y) const {
+inline bool ShadowTracer::blocked(int x, int y) const {
   const float blocker_m = distance_.at(x, y);
-  return now_.depth().at(x, y) > 0.0f && blocker_m >= 0.0f && std::isfinite(blocker_m);
+  return now_.depth().at(x, y) > 0.0f && blocker_m >= 0.0f && blocker_m <= kFarthest;
 }
 
 void ShadowTracer::measure(Channels<float>& out, int first) const {
@@ -127,16 +129,21 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
   float light[3][kFollowBlock], previous[3][kFollowBlock];
   const glm::vec4 centre = light_point(light_, 0.5f, 0.5f);
   glm::vec4 now = relative_from_light_ * centre, before = previous_relative_from_light_ * centre;
-  const glm::vec4 centre_now = now, centre_before = before;
-  for (int i = 0; i < pixels.count; ++i) {
-    if (own != nullptr) {
-      const glm::vec4 local = light_point(light_, u_.at(x + i, y), v_.at(x + i, y));
-      now = own[i] ? relative_from_light_ * local : centre_now;
-      before = own[i] ? previous_relative_from_light_ * local : centre_before;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      light[axis][i] = now[axis];
-      previous[axis][i] = before[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(light[axis], pixels.count, now[axis]);
+    std::fill_n(previous[axis], pixels.count, before[axis]);
+  }
+  if (own != nullptr) {
+    const float *u = u_.row(y) + x, *v = v_.row(y) + x;
+    for (int i = 0; i < pixels.count; ++i) {
+      if (!own[i]) continue;
+      const glm::vec4 local = light_point(light_, u[i], v[i]);
+      now = relative_from_light_ * local;
+      before = previous_relative_from_light_ * local;
+      for (int axis = 0; axis < 3; ++axis) {
+        light[axis][i] = now[axis];
+        previous[axis][i] = before[axis];
+      }
     }
   }
   holdfast::follow_shadow({pixels,
@@ -152,7 +159,7 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
 }
 
 int ShadowTracer::own_blocker_slot(int x, int y) const {
-  return id_ != nullptr ? scene_.slot_of(id_->ids().at(x, y)) : 0;
+  return id_ ? scene_.slot_of(id_.at(x, y)) : 0;
 }
 
 PixelPoint<float> ShadowTracer::follow_own(int x, int y, float ratio) const {
@@ -164,12 +171,17 @@ PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const
 }
 
 int ShadowTracer::nearest_blocker_slot(int x, int y) const {
-  if (id_ == nullptr || scene_.slot_count() == 1) return 0;
-  for (const SearchStep& step : search_order()) {
+  if (!id_ || scene_.slot_count() == 1) return 0;
+  if (blocked(x, y)) return own_blocker_slot(x, y);
+  const ChannelView<const float> depth = now_.depth();
+  const int width = depth.width, height = depth.height;
+  static const auto& order = search_order();
+  for (const SearchStep& step : order) {
     const int qx = x + step.x, qy = y + step.y;
-    if (qx < 0 || qy < 0 || qx >= now_.view.width || qy >= now_.view.height || !blocked(qx, qy))
-      continue;
-    return own_blocker_slot(qx, qy);
+    if (qx < 0 || qy < 0 || qx >= width || qy >= height) continue;
+    const float blocker_m = distance_.at(qx, qy);
+    if (blocker_m >= 0.0f && blocker_m <= kFarthest && depth.at(qx, qy) > 0.0f)
+      return own_blocker_slot(qx, qy);
   }
   return 0;
 }

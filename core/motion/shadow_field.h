@@ -56,7 +56,7 @@ class ShadowTracer {
   const SceneMotion& scene_;
   const Light& light_;
   ChannelView<const float> distance_, u_, v_;
-  const Plane* id_;
+  ChannelView<const std::uint32_t> id_;  ///< of what blocks; null: it is static
   glm::mat4 relative_from_light_, previous_relative_from_light_;
   glm::mat3 half_axes_, previous_half_axes_;
   glm::mat4 pixel_, previous_pixel_;

@@ -53,13 +53,15 @@ T shadow_sweep(const ShadowSample<T>& sample, T ratio, const glm::mat<3, 3, T>& 
   return std::sqrt(sum);
 }
 
+inline constexpr float kFalloffSigma = 0.1f;  // rad; ours, TRMV gives no number
+
 /// TRMV's trust in a shadow vector on uneven ground: G(theta - 90 deg), a Gaussian with peak 1 and
 /// sigma 0.1 rad, of the angle theta between the receiver's previous normal and the line from the
 /// intersection to the surface `seen` at its pixel. 1 where they agree within `footprint_m`.
 template <class T>
 T planarity_falloff(const glm::vec<3, T>& hit, const glm::vec<3, T>& seen,
                     const glm::vec<3, T>& normal, T footprint_m) {
-  constexpr T kSigma = T(0.1);  // rad; ours, TRMV gives no number
+  constexpr T kSigma = T(kFalloffSigma);
   const glm::vec<3, T> line = seen - hit;
   const T distance = glm::length(line);
   if (distance <= footprint_m) return T(1);

@@ -1,6 +1,7 @@
 #include "core/kernels/math.h"
 
 #include <limits>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,21 @@ TEST(Luminance, IsRec709) {
   EXPECT_DOUBLE_EQ(luminance(1.0, 0.0, 0.0), 0.2126);
   EXPECT_DOUBLE_EQ(luminance(0.0, 1.0, 0.0), 0.7152);
   EXPECT_NEAR(luminance(1.0, 1.0, 1.0), 1.0, 1e-12);
+}
+
+TEST(LogOf, AgreesWithTheStandardLibrary) {
+  for (float x = 1e-37f; x < 1e37f; x *= 1.0013f) {
+    const double want = std::log(double(x));
+    ASSERT_NEAR(double(log_of(x)), want, 3e-7 * (1 + std::abs(want))) << x;
+  }
+  EXPECT_EQ(log_of(1.0f), 0.0f);
+}
+
+TEST(SineOfQuarter, AgreesWithTheStandardLibrary) {
+  for (int k = -10'000; k <= 10'000; ++k) {
+    const float v = 0.25f * static_cast<float>(k) * 1e-4f;
+    ASSERT_NEAR(double(sine_of_quarter(v)), std::sin(2 * std::numbers::pi * double(v)), 3e-7) << v;
+  }
 }
 
 }  // namespace
