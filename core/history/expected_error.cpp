@@ -79,9 +79,10 @@ struct Blend {
       const bool shadow_there = samples_of[kShadow][x] > 0.0f;
       const float threshold =
           shadow_there ? threshold_of(slide_px(x, y), rule) : rule.noise_threshold;
-      Estimate chosen = estimate(samples_of[kSurface][x], bias[kSurface][x], variance[x], spread[x],
-                                 threshold, rule);
-      const Estimate shadow = estimate(samples_of[kShadow][x], bias[kShadow][x], variance[x],
+      const float kept = s.change.changed(x, y) ? 0.0f : 1.0f;
+      Estimate chosen = estimate(kept * samples_of[kSurface][x], bias[kSurface][x], variance[x],
+                                 spread[x], threshold, rule);
+      const Estimate shadow = estimate(kept * samples_of[kShadow][x], bias[kShadow][x], variance[x],
                                        spread[x], threshold, rule);
       if (shadow_there &&
           (chosen.samples <= 0.0f || shadow.error < rule.surface_advantage * chosen.error)) {
@@ -132,6 +133,11 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   gather_candidates(guides, noisy, sources, before, s);
   const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
                                                    std::as_const(s.differences)[kShadow]};
+  if (rule.change.noticed)  // by the surface's: nothing moves
+    s.change.measure(guides, {s.candidates, s.differences, kSurface, 1, kSamples + kSurface},
+                     rule.change);
+  else
+    s.change.clear();
   s.activity.measure(guides, differences, 1 + rule.window_step, 0.0f, true);
   const auto spread =
       window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0, &s.activity);

@@ -124,7 +124,15 @@ struct RadianceBlend {
     }
     residual_before.variance = gather(before.residual(3), taps);
     return promise_of(n, d, s.means[kStep * k + kSquare].at(x, y), spread, residual_before, rule,
-                      at_rest);
+                      at_rest && !s.change.changed(x, y));
+  }
+
+  /// Of the first candidate, which in a scene at rest leads nowhere else.
+  void look_for_changes(const Guides& guides) const {
+    if (at_rest && rule.change.noticed)
+      s.change.measure(guides, {s.candidates, s.differences, 0, 3, kSamples}, rule.change);
+    else
+      s.change.clear();
   }
 
   void blend_row(int y, const float* spread) const {
@@ -179,6 +187,7 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
   ChannelView<const float> spread;
   for (int k = 0; k < pass.candidates(); ++k) {
     for_each_row(guides.view.height, [&](int y) { pass.gather_row(k, y); });
+    if (k == 0) pass.look_for_changes(guides);
     spread = window_means(guides, s.differences, kStep, rule.window_step, window, s.means,
                           kStep * k, nullptr, footprint);
   }
