@@ -229,6 +229,7 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
+  changed_share_ = 0;
   if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
     const Channels<float>* window = nullptr;
     if (has_footprint_)
@@ -236,14 +237,18 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
           input.frames.now.view.height,
           channels_ == 1 ? kVisibilityWindowPrecision : kRadianceWindowPrecision, s);
     if (channels_ == 1) {
+      ExpectedErrorRule rule = recipe_.visibility_blend;
+      rule.change.noticed &= shadows_at_rest(input);
       blend_by_expected_error(input.frames.now, s.noisy, sources,
-                              std::as_const(s.means)[kSampleVariance], window,
-                              recipe_.visibility_blend, before, s.blend, s.window, now, debug);
+                              std::as_const(s.means)[kSampleVariance], window, rule, before,
+                              s.blend, s.window, now, debug);
+      changed_share_ = s.blend.change.share();
     } else {
       blend_radiance(
           input.frames.now, s.noisy, sources, window,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
+      changed_share_ = s.radiance_blend.change.share();
     }
   } else {
     AccumulationRule rule = recipe_.accumulation;
@@ -254,6 +259,12 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
     accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
     if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
+}
+
+/// Whatever else moves, the shadows of this light stand still: a change is one of the light.
+bool ComponentFilter::shadows_at_rest(const ComponentInput& input) const {
+  const SceneMotion& scene = input.frames.scene;
+  return scene.geometry_at_rest() && scene.light(component_.light).at_rest;
 }
 
 void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out) {

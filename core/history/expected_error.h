@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/history/component_history.h"
+#include "core/history/light_change.h"
 #include "core/spatial/window.h"
 
 namespace holdfast {
@@ -19,6 +20,7 @@ struct ExpectedErrorRule {
       10;                   ///< the surface vector must promise this much less error to replace
                             ///< the shadow vector: the smallest of two estimates flatters itself
   float most_samples = 64;  ///< cap of the samples credited to history
+  LightChangeRule change;   ///< where that is found, history is left
 };
 
 /// Scratch of `blend_by_expected_error`.
@@ -27,13 +29,15 @@ struct BlendScratch {
   Channels<float> differences;  ///< candidate minus noisy
   Channels<float> bias;         ///< their local means
   ActivityMap activity;         ///< of the differences
+  LightChange change;
 
   BlendScratch() = default;
   BlendScratch(int width, int height)
       : candidates(width, height, 4),
         differences(width, height, 2),
         bias(width, height, 2),
-        activity(width, height) {}
+        activity(width, height),
+        change(width, height) {}
   std::size_t bytes() const { return candidates.bytes() + differences.bytes() + bias.bytes(); }
 };
 
