@@ -12,14 +12,14 @@ namespace {
 constexpr int kMostSurfaces = 3;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Irradiance from all lights by one uniform sample of each.
+/// Irradiance from all lights by one sample of each.
 glm::dvec3 sample_irradiance(const World& world, const std::vector<LightState>& lights,
                              const Surface& surface, Rng& rng) {
   glm::dvec3 sum(0.0);
   for (const LightState& light : lights) {
     const glm::dvec2 uv = rng.next2();
     if (!light.is_on()) continue;
-    const LightSample sample = sample_light(light, surface.origin, uv);
+    const LightSample sample = sample_irradiance_of(light, surface.origin, uv);
     const double cosine = glm::dot(surface.normal, sample.direction);
     if (cosine <= 0.0 || sample.geometry <= 0.0) continue;
     if (!world.occluded(surface.origin, sample.direction, sample.distance_m))
