@@ -90,7 +90,7 @@ void add_quality_options(CLI::App& command, CLI::Option* with_vectors, QualitySe
           ->capture_default_str(),
       command
           .add_option("--reference-spp", quality.reference_spp,
-                      "Samples per pixel of references; 1600 or 1024, by scene, if absent")
+                      "Samples per pixel of references; 256 to 2048, by scene, if absent")
           ->check(CLI::PositiveNumber),
       command.add_option("--speed", quality.speed, "Multiplies the speed of all animation")
           ->check(CLI::NonNegativeNumber)

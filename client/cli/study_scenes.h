@@ -22,12 +22,12 @@ struct QualitySettings {
 /// How a scene is rendered for a study of quality. References cost most of the time, so:
 ///
 ///   fence, cylinder  shadows alone: 1600 samples, for each frame
-///   static           1024 samples, rendered once, for each frame
-///   cut              1024 samples, rendered once between events, for the last two of every 5
-///   frames,
-///                    so that judging starts at each event's frame, 30, 60 and 90; always the
-///                    frames 17..96 at their own speed
-///   others           1024 samples, for the last two of every 8 frames
+///   static           2048 samples, rendered once, for each frame
+///   cut              256 samples, rendered once between events, for the last two of every 5
+///                    frames, so that judging starts at each event's frame, 30, 60 and 90; always
+///                    the frames 17..119 at their own speed
+///   others           512 (room), 1024 (glossy-floor), 2048 (occluder) samples, for the last two of
+///                    every 8 frames
 RenderOptions quality_render(const std::string& scene, const QualitySettings& settings);
 
 }  // namespace holdfast::cli

@@ -118,7 +118,7 @@ TEST_F(Study, JudgesACutFromTheFramesOfItsEvents) {
       << text;
   const SequenceReader sequence(dir / "study/cut/sequence");
   EXPECT_EQ(sequence.frame_indices().front(), 17);
-  EXPECT_EQ(sequence.frame_indices().back(), 96);
+  EXPECT_EQ(sequence.frame_indices().back(), 119);
   for (const std::int64_t event : {30, 60, 90}) {
     EXPECT_FALSE(sequence.has_reference(event - 1));
     EXPECT_TRUE(sequence.has_reference(event) && sequence.has_reference(event + 1));
