@@ -178,27 +178,29 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
     *result.mutable_error() = *slot.error;
     return;
   }
-  timing.set_core_ms(slot.report.ms);
-  for (const StageTime& stage : slot.report.stages) {
+  const FrameReport& report = slot.answer->report;
+  result.set_repeated(slot.repeated);
+  timing.set_core_ms(report.ms);
+  for (const StageTime& stage : report.stages) {
     v1::StageTime& out = *timing.add_stages();
     out.set_stage(stage.stage);
     out.set_ms(stage.ms);
   }
   for (std::size_t i = 0; i < config.results.size(); ++i) {
-    const Plane& plane = slot.results.at(config.results[i]);
+    const Plane& plane = slot.answer->results.at(config.results[i]);
     v1::FramePlane& out = *result.add_planes();
     out.set_plane(static_cast<std::uint32_t>(i));
     out.set_width_px(static_cast<std::uint32_t>(plane.width()));
     out.set_height_px(static_cast<std::uint32_t>(plane.height()));
   }
-  result.set_history_reset(slot.report.history_reset);
-  result.set_mean_history_frames(slot.report.mean_history_frames);
-  for (const RepairCount& repair : slot.report.repaired) {
+  result.set_history_reset(report.history_reset);
+  result.set_mean_history_frames(report.mean_history_frames);
+  for (const RepairCount& repair : report.repaired) {
     v1::RepairCount& out = *result.add_repaired();
     out.set_plane(plane_name(repair.plane));
     out.set_values(repair.values);
   }
-  result.set_non_finite_out(slot.report.non_finite_out);
+  result.set_non_finite_out(report.non_finite_out);
 }
 
 }  // namespace holdfast::server

@@ -28,6 +28,7 @@ DenoiseStream* DenoiseStream::start(ServiceState& state) {
 void DenoiseStream::OnReadDone(bool ok) {
   std::unique_lock lock(mutex_);
   reading_ = false;
+  heir_ = false;
   if (!ok) {
     read_all_ = true;
     if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
@@ -40,7 +41,11 @@ void DenoiseStream::OnReadDone(bool ok) {
       end(status_from(std::current_exception()));
     }
   }
+  const auto self = heir_ ? shared_from_this() : nullptr;  // outlives what follows
+  const std::string taken_over = heir_ ? session_->id() : std::string();
   unlock_and_finish(lock);
+  // After the mutex: two streams that take each other's session over must not wait for each other.
+  if (self) state_.streams.take_over(taken_over, this);
 }
 
 /// True if the next message may be read.
@@ -68,14 +73,20 @@ bool DenoiseStream::handle_request() {
 }
 
 void DenoiseStream::handle_hello(const v1::Hello& hello) {
-  session_ = state_.sessions.attach(hello.session_id(), hello.token());
+  const SessionTable::Attached attached = state_.sessions.attach(hello.session_id(), hello.token());
+  session_ = attached.session;
+  hold_ = attached.hold;
+  heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
   welcome.set_resumed(counters.last_frame.has_value());
   welcome.set_last_frame_index(counters.last_frame.value_or(0));
-  state_.log->info("event=stream_open session={} resumed={}", session_->id(), welcome.resumed());
+  welcome.set_epoch(counters.epoch);
+  state_.log->info("event=stream_open session={} resumed={} taken_over={} last_acked={}",
+                   session_->id(), welcome.resumed(), heir_,
+                   hello.has_last_acked_frame() ? hello.last_acked_frame() : -1);
   write_on();
 }
 
@@ -120,7 +131,9 @@ void DenoiseStream::filter(FrameSlot& slot) {
   }
   if (wanted && slot.error) session_->count_error();
   if (wanted && !slot.error) try {
-      slot.report = session_->filter(slot.frame, slot.results);
+      slot.answer = session_->repeat(slot.frame.index, slot.epoch);
+      slot.repeated = slot.answer != nullptr;
+      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
@@ -141,7 +154,7 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
                      slot.frame.index, slot.error->message());
   else
     state_.log->debug("event=frame session={} frame={} core_ms={:.2f} reset={}", session_->id(),
-                      slot.frame.index, slot.report.ms, slot.report.history_reset);
+                      slot.frame.index, slot.answer->report.ms, slot.answer->report.history_reset);
 }
 
 // --- writing -------------------------------------------------------------------------------------
@@ -183,6 +196,7 @@ bool DenoiseStream::next_response() {
 
 /// Makes the slot free and lets a waiting FrameBegin have it.
 void DenoiseStream::release(FrameSlot& slot) {
+  slot.answer.reset();
   free_.push_back(&slot);
   if (!stalled_) return;
   stalled_ = false;
@@ -194,6 +208,7 @@ void DenoiseStream::release(FrameSlot& slot) {
 void DenoiseStream::drop_unsent() {
   sender_.reset();
   notices_.clear();
+  for (FrameSlot* const slot : sending_) slot->answer.reset();
   free_.insert(free_.end(), sending_.begin(), sending_.end());
   sending_.clear();
 }
@@ -204,6 +219,16 @@ void DenoiseStream::OnCancel() {
   std::unique_lock lock(mutex_);
   broken_ = true;
   if (!writing_) drop_unsent();  // else the message being written may belong to a slot
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::yield() {
+  std::unique_lock lock(mutex_);
+  if (status_.ok())
+    status_ = status_from(std::make_exception_ptr(
+        RefusedError(Refusal::kTakenOver, "a newer stream has the session")));
+  broken_ = true;
+  if (!writing_) drop_unsent();
   unlock_and_finish(lock);
 }
 
@@ -244,7 +269,7 @@ void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {
   if (now) {
     finished_ = true;
     if (session_) {
-      state_.sessions.detach(*session_);
+      state_.sessions.detach(*session_, hold_);
       state_.log->info("event=stream_end session={} broken={} status={}", session_->id(), broken_,
                        static_cast<int>(status_.error_code()));
     }

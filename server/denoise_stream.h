@@ -40,6 +40,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks
   /// are still coming in; later frames are not accepted.
   void close(const grpc::Status& status);
+  /// Ends the stream, because another one has its session: what is in flight is dropped.
+  void yield();
   /// Empty before Hello.
   std::string session_id() const;
 
@@ -76,6 +78,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
 
   mutable std::mutex mutex_;
   std::shared_ptr<Session> session_;
+  SessionLife::Hold hold_ = 0;  ///< on session_
+  bool heir_ = false;           ///< an older stream of the session has to be ended
   std::optional<FrameAssembler> assembler_;
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;

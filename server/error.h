@@ -9,9 +9,9 @@ namespace holdfast::server {
 enum class Refusal {
   kUnknownSession,  ///< no session of that id: never made, deleted, or expired
   kWrongToken,
-  kBusy,      ///< the session has a stream already
-  kLimit,     ///< a limit of the server is reached
-  kDraining,  ///< the server is shutting down
+  kTakenOver,  ///< a newer stream has the session
+  kLimit,      ///< a limit of the server is reached
+  kDraining,   ///< the server is shutting down
 };
 
 /// A refused request; status.h translates it for the wire.

@@ -22,7 +22,10 @@ void FrameAssembler::begin(const v1::FrameBegin& message, FrameSlot& slot) {
   slot_ = &slot;
   slot.error.reset();
   slot.begun = std::chrono::steady_clock::now();
+  slot.answer.reset();
+  slot.repeated = false;
   slot.frame.index = message.index();
+  slot.epoch = message.epoch();
   progress_.assign(config_.denoiser.planes.size(), {});
   try {
     read_frame_header(message, config_, slot.frame);

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <optional>
 
-#include "core/denoiser/denoiser.h"
 #include "holdfast/v1/error.pb.h"
+#include "server/answer.h"
 
 namespace holdfast::server {
 
@@ -14,10 +14,11 @@ struct FrameSlot {
   using TimePoint = std::chrono::steady_clock::time_point;
 
   Frame frame;
-  PlaneSet results;
-  FrameReport report;
-  std::optional<v1::FrameError> error;  ///< then there are no results
-  TimePoint begun, ended, started;      ///< FrameBegin, FrameEnd, start of filtering
+  std::uint64_t epoch = 0;
+  std::shared_ptr<const Answer> answer;  ///< null if there is an error
+  bool repeated = false;                 ///< `answer` is that of an earlier time
+  std::optional<v1::FrameError> error;
+  TimePoint begun, ended, started;  ///< FrameBegin, FrameEnd, start of filtering
 };
 
 }  // namespace holdfast::server

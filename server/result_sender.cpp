@@ -16,7 +16,7 @@ bool ResultSender::next(v1::DenoiseResponse& response) {
   }
   if (slot_.error || plane_ == config_.results.size()) return false;
 
-  const Plane& plane = slot_.results.at(config_.results[plane_]);
+  const Plane& plane = slot_.answer->results.at(config_.results[plane_]);
   const std::size_t size = wire::plane_bytes(plane);
   const std::size_t bytes = std::min(wire::kMaxChunkBytes, size - offset_);
   v1::PlaneChunk& chunk = *response.mutable_plane_chunk();  // keeps the buffer of the chunk before

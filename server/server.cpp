@@ -21,6 +21,11 @@ namespace {
 constexpr int kHttp2FrameBytes = 1 << 20;  // fewer, larger frames: less CPU for large messages
 constexpr std::chrono::seconds kExpiryPeriod{1};
 
+// A peer that is frozen, or gone without a word, is noticed after the sum of the first two.
+constexpr int kKeepaliveMs = 10000;
+constexpr int kKeepaliveTimeoutMs = 5000;
+constexpr int kMinPingMs = 5000;  // between a client's own pings
+
 const ServerConfig& checked(const ServerConfig& config) {
   if (config.threads < 0)
     throw InputError("threads", "must be at least 0", std::to_string(config.threads));
@@ -101,6 +106,10 @@ class Server::Impl {
     builder.SetMaxReceiveMessageSize(wire::kMaxMessageBytes);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinPingMs);
+    builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     // The probe finds the window of a long link; a unix socket has none to find.
     if (listen.starts_with("unix:")) {
       builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);

@@ -5,27 +5,51 @@
 
 namespace holdfast::server {
 
-Session::Session(std::string id, std::string token, SessionConfig config)
+Session::Session(std::string id, std::string token, SessionConfig config, int remembered)
     : id_(std::move(id)),
       token_(std::move(token)),
       config_(std::move(config)),
-      denoiser_(config_.denoiser) {}
+      denoiser_(config_.denoiser),
+      denoiser_bytes_(denoiser_->memory_bytes()),
+      plan_text_(denoiser_->plan_text()),
+      ledger_(static_cast<std::size_t>(remembered)) {}
 
-FrameReport Session::filter(const Frame& frame, PlaneSet& results) {
+std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t epoch) {
   try {
-    FrameReport report = denoiser_.filter(frame, results);
+    if (epoch < epoch_)
+      throw InputError("epoch of frame " + std::to_string(frame.index),
+                       "must be at least " + std::to_string(epoch_), std::to_string(epoch));
+    if (epoch > epoch_ || !denoiser_) {
+      denoiser_.reset();  // first, so that there are never two histories
+      denoiser_.emplace(config_.denoiser);
+      epoch_ = epoch;
+    }
+    const std::shared_ptr<Answer> answer = ledger_.fresh();
+    answer->report = denoiser_->filter(frame, answer->results);
+    answer->epoch = epoch;
+    ledger_.keep(answer);
     const std::lock_guard lock(mutex_);
     counters_.last_frame = frame.index;
+    counters_.epoch = epoch;
     ++counters_.frames;
-    return report;
+    return answer;
   } catch (const InputError&) {
     count_error();
     throw;
   } catch (...) {
-    denoiser_.reset();
+    if (denoiser_) denoiser_->reset();
     count_error();
     throw;
   }
+}
+
+std::shared_ptr<const Answer> Session::repeat(std::int64_t index, std::uint64_t epoch) {
+  std::shared_ptr<const Answer> answer = ledger_.find(epoch, index);
+  if (answer) {
+    const std::lock_guard lock(mutex_);
+    ++counters_.repeated;
+  }
+  return answer;
 }
 
 void Session::count_error() {
@@ -38,14 +62,15 @@ SessionCounters Session::counters() const {
   return counters_;
 }
 
-std::size_t frame_bytes(const DenoiserConfig& config) {
-  std::size_t bytes = 0;
-  const auto add = [&](PlaneId id) {
-    bytes += wire::plane_bytes(id, plane_size(id, config.width, config.height));
+std::size_t frame_bytes(const DenoiserConfig& config, int credits) {
+  const auto bytes_of = [&](const std::vector<PlaneId>& planes) {
+    std::size_t bytes = 0;
+    for (const PlaneId id : planes)
+      bytes += wire::plane_bytes(id, plane_size(id, config.width, config.height));
+    return bytes;
   };
-  for (const PlaneId id : config.planes) add(id);
-  for (const PlaneId id : result_planes(config)) add(id);
-  return bytes;
+  const auto frames = static_cast<std::size_t>(credits);
+  return bytes_of(config.planes) * frames + bytes_of(result_planes(config)) * (frames + 1);
 }
 
 }  // namespace holdfast::server

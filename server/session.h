@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/denoiser/denoiser.h"
+#include "server/answer.h"
 #include "server/scheduler.h"
 
 namespace holdfast::server {
@@ -24,42 +25,54 @@ struct SessionConfig {
 /// What a session has done so far.
 struct SessionCounters {
   std::optional<std::int64_t> last_frame;  ///< in the history
+  std::uint64_t epoch = 0;                 ///< of that frame
   std::uint64_t frames = 0;
   std::uint64_t frame_errors = 0;
+  std::uint64_t repeated = 0;  ///< answered from memory
 };
 
 /// One client's configuration and history.
 class Session {
  public:
-  /// Throws InputError for a configuration that the core refuses.
-  Session(std::string id, std::string token, SessionConfig config);
+  /// `remembered`: answers kept for frames that come again. Throws InputError for a configuration
+  /// that the core refuses.
+  Session(std::string id, std::string token, SessionConfig config, int remembered);
 
   const std::string& id() const { return id_; }
   const std::string& token() const { return token_; }
   const SessionConfig& config() const { return config_; }
 
-  /// Filters a frame; called from jobs of `strand()` only. Throws InputError for a frame that
-  /// breaks a rule (history untouched); any other exception resets the history.
-  FrameReport filter(const Frame& frame, PlaneSet& results);
+  /// Filters a frame; called from jobs of `strand()` only. A greater epoch than that of the frame
+  /// before starts the history anew. Throws InputError for a frame that breaks a rule (history
+  /// untouched); any other exception resets the history.
+  std::shared_ptr<const Answer> filter(const Frame& frame, std::uint64_t epoch);
+  /// The answer to a frame that was filtered already; null if it was not, or too long ago. Called
+  /// from jobs of `strand()` only.
+  std::shared_ptr<const Answer> repeat(std::int64_t index, std::uint64_t epoch);
   /// Counts a frame that was refused before it reached `filter`.
   void count_error();
   SessionCounters counters() const;
 
   const std::shared_ptr<Strand>& strand() const { return strand_; }
   /// History and scratch; see Denoiser::memory_bytes.
-  std::size_t denoiser_bytes() const { return denoiser_.memory_bytes(); }
-  std::string plan_text() const { return denoiser_.plan_text(); }
+  std::size_t denoiser_bytes() const { return denoiser_bytes_; }
+  const std::string& plan_text() const { return plan_text_; }
 
  private:
   const std::string id_, token_;
   const SessionConfig config_;
-  Denoiser denoiser_;
+  std::optional<Denoiser> denoiser_;  ///< always there but while it is made anew
+  std::size_t denoiser_bytes_;
+  std::string plan_text_;
+  AnswerLedger ledger_;
+  std::uint64_t epoch_ = 0;  ///< of the history
   const std::shared_ptr<Strand> strand_ = std::make_shared<Strand>();
   mutable std::mutex mutex_;
   SessionCounters counters_;
 };
 
-/// Bytes of one frame in flight: its planes and its results, whether or not they are sent back.
-std::size_t frame_bytes(const DenoiserConfig& config);
+/// Bytes of the frames of a session that may be in flight at once, and of the answers that are
+/// remembered and made; results count whether or not they are sent back.
+std::size_t frame_bytes(const DenoiserConfig& config, int credits);
 
 }  // namespace holdfast::server

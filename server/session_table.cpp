@@ -20,16 +20,16 @@ SessionTable::SessionTable(SessionLimits limits, Clock clock)
 
 std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
   const std::string id = random_hex(kIdBytes);
-  const auto credits = static_cast<std::size_t>(limits_.credits);
   expire();
-  admit(id, frame_bytes(config.denoiser) * credits);
+  admit(id, frame_bytes(config.denoiser, limits_.credits));
   try {
-    auto session = std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config));
+    auto session =
+        std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
     grow(id, session->denoiser_bytes());
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_.at(id);
     entry.session = session;
-    entry.detached_at = clock_();
+    entry.life = SessionLife(clock_());
     return session;
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -56,7 +56,7 @@ void SessionTable::admit(const std::string& id, std::size_t bytes) {
     throw RefusedError(Refusal::kLimit, "the server has " + std::to_string(entries_.size()) +
                                             " sessions, the most it allows");
   check_bytes(bytes, total_bytes_ + bytes);
-  entries_[id].bytes = bytes;
+  entries_.emplace(id, Entry{nullptr, bytes, SessionLife(clock_())});
   total_bytes_ += bytes;
 }
 
@@ -85,22 +85,19 @@ std::shared_ptr<Session> SessionTable::find(const std::string& id, const std::st
   return checked(id, token).session;
 }
 
-std::shared_ptr<Session> SessionTable::attach(const std::string& id, const std::string& token) {
+SessionTable::Attached SessionTable::attach(const std::string& id, const std::string& token) {
   expire();
   const std::lock_guard lock(mutex_);
-  if (checked(id, token).attached)
-    throw RefusedError(Refusal::kBusy, "session " + id + " has a stream already");
+  checked(id, token);
   Entry& entry = entries_.at(id);
-  entry.attached = true;
-  return entry.session;
+  const bool taken_over = entry.life.streaming();
+  return {entry.session, entry.life.attach(), taken_over};
 }
 
-void SessionTable::detach(const Session& session) {
+void SessionTable::detach(const Session& session, SessionLife::Hold hold) {
   const std::lock_guard lock(mutex_);
   const auto it = entries_.find(session.id());
-  if (it == entries_.end()) return;
-  it->second.attached = false;
-  it->second.detached_at = clock_();
+  if (it != entries_.end()) it->second.life.detach(hold, clock_());
 }
 
 void SessionTable::remove(const std::string& id, const std::string& token) {
@@ -117,7 +114,7 @@ int SessionTable::expire() {
   const std::lock_guard lock(mutex_);
   for (auto it = entries_.begin(); it != entries_.end();) {
     Entry& entry = it->second;
-    if (entry.session && !entry.attached && now - entry.detached_at >= limits_.linger) {
+    if (entry.session && entry.life.expired(now, limits_.linger)) {
       dying.push_back(std::move(entry.session));
       total_bytes_ -= entry.bytes;
       it = entries_.erase(it);
@@ -131,7 +128,7 @@ int SessionTable::expire() {
 bool SessionTable::attached(const Session& session) const {
   const std::lock_guard lock(mutex_);
   const auto it = entries_.find(session.id());
-  return it != entries_.end() && it->second.attached;
+  return it != entries_.end() && it->second.life.streaming();
 }
 
 std::size_t SessionTable::bytes(const Session& session) const {

@@ -9,6 +9,7 @@
 
 #include "server/config.h"
 #include "server/session.h"
+#include "server/session_life.h"
 
 namespace holdfast::server {
 
@@ -16,7 +17,7 @@ namespace holdfast::server {
 /// Every function may be called from any thread.
 class SessionTable {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;
+  using TimePoint = SessionLife::TimePoint;
   using Clock = std::function<TimePoint()>;
 
   explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
@@ -29,10 +30,16 @@ class SessionTable {
   /// The session. Throws RefusedError(kUnknownSession, kWrongToken).
   std::shared_ptr<Session> find(const std::string& id, const std::string& token) const;
 
-  /// The session, held for one stream until `detach`. Throws as `find`, and kBusy.
-  std::shared_ptr<Session> attach(const std::string& id, const std::string& token);
-  /// Ends the hold; the session then lingers. No effect if it was removed meanwhile.
-  void detach(const Session& session);
+  /// A session held for one stream until `detach`.
+  struct Attached {
+    std::shared_ptr<Session> session;
+    SessionLife::Hold hold = 0;
+    bool taken_over = false;  ///< from an older stream, whose hold is void now
+  };
+  /// Throws as `find`.
+  Attached attach(const std::string& id, const std::string& token);
+  /// Ends the hold; the session then lingers. No effect if the hold is void or the session removed.
+  void detach(const Session& session, SessionLife::Hold hold);
 
   /// Ends a session at once. Throws as `find`.
   void remove(const std::string& id, const std::string& token);
@@ -50,8 +57,7 @@ class SessionTable {
   struct Entry {
     std::shared_ptr<Session> session;  ///< null while it is being made
     std::size_t bytes = 0;
-    bool attached = false;
-    TimePoint detached_at{};
+    SessionLife life;
   };
 
   const Entry& checked(const std::string& id, const std::string& token) const;

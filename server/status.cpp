@@ -20,7 +20,7 @@ grpc::StatusCode code_of(Refusal reason) {
   switch (reason) {
     case Refusal::kUnknownSession: return grpc::StatusCode::NOT_FOUND;
     case Refusal::kWrongToken: return grpc::StatusCode::PERMISSION_DENIED;
-    case Refusal::kBusy: return grpc::StatusCode::FAILED_PRECONDITION;
+    case Refusal::kTakenOver: return grpc::StatusCode::ABORTED;
     case Refusal::kLimit: return grpc::StatusCode::RESOURCE_EXHAUSTED;
     case Refusal::kDraining: return grpc::StatusCode::UNAVAILABLE;
   }

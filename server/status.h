@@ -9,7 +9,7 @@
 namespace holdfast::server {
 
 /// The one place where exceptions become gRPC statuses: InputError -> INVALID_ARGUMENT with
-/// InputViolation details; RefusedError -> NOT_FOUND, PERMISSION_DENIED, FAILED_PRECONDITION,
+/// InputViolation details; RefusedError -> NOT_FOUND, PERMISSION_DENIED, ABORTED,
 /// RESOURCE_EXHAUSTED or UNAVAILABLE; std::bad_alloc -> RESOURCE_EXHAUSTED; others -> INTERNAL.
 grpc::Status status_from(std::exception_ptr error);
 

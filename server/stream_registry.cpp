@@ -31,6 +31,11 @@ void StreamRegistry::close_session(const std::string& session_id) {
       stream->close({grpc::StatusCode::NOT_FOUND, "session " + session_id + " was deleted"});
 }
 
+void StreamRegistry::take_over(const std::string& session_id, const DenoiseStream* heir) {
+  for (const auto& stream : all())
+    if (stream.get() != heir && stream->session_id() == session_id) stream->yield();
+}
+
 void StreamRegistry::drain(std::chrono::milliseconds deadline) {
   {
     const std::lock_guard lock(mutex_);

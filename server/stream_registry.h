@@ -18,8 +18,10 @@ class StreamRegistry {
   /// False, and the stream is not added, once `drain` was called.
   bool add(const std::shared_ptr<DenoiseStream>& stream);
   void remove(const DenoiseStream* stream);
-  /// Closes the stream of a session, if it has one.
+  /// Closes the streams of a session, if it has any.
   void close_session(const std::string& session_id);
+  /// Ends every stream of the session but `heir`, which has taken the session over.
+  void take_over(const std::string& session_id, const DenoiseStream* heir);
   /// Asks every stream to finish the frames in flight and end; refuses new ones.
   void drain(std::chrono::milliseconds deadline);
   /// Waits until no stream is open; false if some are at the deadline.

@@ -21,6 +21,7 @@ void add_bench(CLI::App& app);
 void add_check(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_demo(CLI::App& app);
+void add_load(CLI::App& app);
 void add_render(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_study(CLI::App& app);

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_check(app);
   add_compare(app);
   add_demo(app);
+  add_load(app);
   add_render(app);
   add_replay(app);
   add_study(app);

@@ -49,7 +49,7 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--reference-spp", settings.reference_spp,
-                   "The same for references, rounded up to a square; 0 = no references")
+                   "The same for references, best a power of 4; 0 = no references")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command

@@ -1,8 +1,6 @@
 #include "client/cli/replay.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
 #include <thread>
 
@@ -10,6 +8,7 @@
 
 #include "client/cli/command.h"
 #include "client/cli/embedded_server.h"
+#include "client/cli/percentiles.h"
 #include "client/cli/progress.h"
 #include "client/sequence/sequence.h"
 #include "core/denoiser/denoiser.h"
@@ -130,20 +129,6 @@ class Replay {
   Progress progress_;
   ReplayResult result_;
 };
-
-/// The smallest value that `fraction` of the values do not exceed (nearest rank).
-double percentile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-}
-
-nlohmann::ordered_json percentiles(const std::vector<double>& values) {
-  return {{"p50", percentile(values, 0.50)},
-          {"p95", percentile(values, 0.95)},
-          {"p99", percentile(values, 0.99)}};
-}
 
 }  // namespace
 

@@ -7,9 +7,11 @@
 #include "client/cli/study.h"
 #include "client/cli/study_scenes.h"
 #include "client/cli/study_text.h"
+#include "client/cli/study_vectors.h"
 #include "client/measure/claims_text.h"
 #include "client/measure/markdown.h"
 #include "core/denoiser/denoiser.h"
+#include "core/frame/error.h"
 
 namespace holdfast::cli {
 namespace {
@@ -17,14 +19,43 @@ namespace {
 struct Arguments {
   QualitySettings quality;
   StudyOptions study;
-  std::string size = "480x270", json, markdown;
-  bool with_quality = false;
+  std::string size, json, markdown;
+  bool with_quality = false, with_vectors = false, quick = false;
 };
 
-void run(Arguments& arguments) {
+/// Writes the tables to the file of --markdown, or prints them.
+void write_tables(const Arguments& arguments, const std::string& tables) {
+  if (!arguments.markdown.empty())
+    measure::write_markdown(arguments.markdown, tables);
+  else
+    std::fputs(tables.c_str(), stdout);
+}
+
+void run_vectors(const Arguments& arguments) {
+  VectorStudyOptions options{.out = arguments.study.out,
+                             .seed = arguments.quality.seed,
+                             .quick = arguments.quick,
+                             .quiet = arguments.study.quiet};
+  if (!arguments.size.empty())
+    parse_image_size("option --size", arguments.size, options.width, options.height);
+  std::vector<StudyStep> steps;
+  const measure::VectorStudy study = study_vectors(options, steps);
+  if (!arguments.json.empty()) {
+    nlohmann::ordered_json json = measure::vector_json(study);
+    for (const StudyStep& step : steps) json["seconds"][step.name] = step.seconds;
+    write_json_file(arguments.json, json);
+  }
+  write_tables(arguments, measure::vector_markdown(study));
+  if (!options.quiet) std::fputs(steps_text(steps).c_str(), stderr);
+}
+
+void run_quality(Arguments& arguments) {
   QualitySettings& quality = arguments.quality;
   StudyOptions& options = arguments.study;
-  parse_image_size("option --size", arguments.size, quality.width, quality.height);
+  if (options.out.empty())
+    throw InputError("option --output", "is needed with --quality", "absent");
+  if (!arguments.size.empty())
+    parse_image_size("option --size", arguments.size, quality.width, quality.height);
   for (const std::string& scene : quality.scenes)
     options.scenes.push_back(quality_render(scene, quality));
   options.measure_references = true;
@@ -39,13 +70,35 @@ void run(Arguments& arguments) {
                            .link_pictures = true});
   });
   if (!arguments.json.empty()) write_json_file(arguments.json, quality_json(study, claims));
-  const std::string markdown = quality_markdown(study.scenes, claims);
-  if (!arguments.markdown.empty())
-    measure::write_markdown(arguments.markdown, markdown);
-  else
-    std::fputs(markdown.c_str(), stdout);
+  write_tables(arguments, quality_markdown(study.scenes, claims));
   if (!options.quiet)
     std::fprintf(stderr, "%sreport: %s\n", steps_text(study.steps).c_str(), page.c_str());
+}
+
+/// Options that mean nothing to a study of vectors.
+void add_quality_options(CLI::App& command, CLI::Option* with_vectors, QualitySettings& quality,
+                         StudyOptions& study) {
+  CLI::Option* options[] = {
+      command.add_option("--scenes", quality.scenes, "Scenes, comma separated")
+          ->delimiter(',')
+          ->capture_default_str(),
+      command.add_option("--recipes", study.recipes, "Recipes, comma separated")
+          ->delimiter(',')
+          ->capture_default_str(),
+      command.add_option("--frames", quality.frames, "Frames of each scene; \"cut\" always has 80")
+          ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000}))
+          ->capture_default_str(),
+      command
+          .add_option("--reference-spp", quality.reference_spp,
+                      "Samples per pixel of references; 1600 or 1024, by scene, if absent")
+          ->check(CLI::PositiveNumber),
+      command.add_option("--speed", quality.speed, "Multiplies the speed of all animation")
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str(),
+      command.add_flag("--reuse", study.reuse, "Keep sequences that are in the folder already"),
+      command.add_flag("!--no-flip", study.flip,
+                       "Leave out FLIP, which takes most of the comparison")};
+  for (CLI::Option* option : options) option->excludes(with_vectors);
 }
 
 }  // namespace
@@ -56,38 +109,33 @@ void add_study(CLI::App& app) {
   StudyOptions& study = arguments->study;
   study.recipes = recipe_names();
   CLI::App& command = *app.add_subcommand(
-      "study", "Measure all recipes on all scenes: figures, claims, tables and a report");
-  command
-      .add_flag("--quality", arguments->with_quality,
-                "Errors against references, and whether the claims hold")
-      ->required();
-  command.add_option("-o,--output", study.out, "Folder of everything that is made")->required();
-  command.add_option("--scenes", quality.scenes, "Scenes, comma separated")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--recipes", study.recipes, "Recipes, comma separated")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--frames", quality.frames, "Frames of each scene; \"cut\" always has 80")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000}))
-      ->capture_default_str();
-  command.add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-  command
-      .add_option("--reference-spp", quality.reference_spp,
-                  "Samples per pixel of references; 1600 or 1024, by scene, if absent")
-      ->check(CLI::PositiveNumber);
+      "study", "Measure recipes or motion vectors: figures, claims, tables, pictures");
+  CLI::App& subject = *command.add_option_group("subject")->require_option(1);
+  subject.add_flag("--quality", arguments->with_quality,
+                   "All recipes on all scenes: errors, and whether the claims hold");
+  CLI::Option* with_vectors = subject.add_flag(
+      "--vectors", arguments->with_vectors,
+      "Motion vectors alone: the frame before without noise, warped by each of them");
+  command.add_option("-o,--output", study.out,
+                     "Folder of everything that is made; of the pictures of --vectors");
+  add_quality_options(command, with_vectors, quality, study);
+  command.add_option("--size", arguments->size,
+                     "WIDTHxHEIGHT in pixels; 480x270, or 240x135 of --vectors, if absent");
   command.add_option("--seed", quality.seed, "Seed of all random numbers")->capture_default_str();
-  command.add_option("--speed", quality.speed, "Multiplies the speed of all animation")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command.add_flag("--reuse", study.reuse, "Keep sequences that are in the folder already");
-  command.add_flag("!--no-flip", study.flip, "Leave out FLIP, which takes most of the comparison");
+  command
+      .add_flag("--quick", arguments->quick, "Of --vectors: fewer roughnesses, frames and samples")
+      ->needs(with_vectors);
   command.add_option("--json", arguments->json, "Write the machine-readable result to this file");
   command.add_option("--markdown", arguments->markdown,
                      "Write the tables to this file, between its lines <!-- table:begin --> and "
                      "<!-- table:end --> if it has them; else they are printed");
   command.add_flag("--quiet", study.quiet, "Print nothing but the tables and errors");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] {
+    if (arguments->with_vectors)
+      run_vectors(*arguments);
+    else
+      run_quality(*arguments);
+  });
 }
 
 }  // namespace holdfast::cli

@@ -34,6 +34,9 @@ Scene room_scene();
 /// The room at rest, but: the camera cuts at frame 30, a second light is switched on at 60, an
 /// object appears at 90.
 Scene cut_scene();
+/// A block, a ball and a bar move over a floor of one roughness (0..1), for the study of motion
+/// vectors; not listed. The camera stands still, or moves along for 20 frames.
+Scene roughness_scene(double roughness, bool camera_moves);
 
 /// Shapes that built-in scenes are put together from.
 Part box_part(const glm::dvec3& size_m, const glm::dvec3& centre, double turn_deg = 0.0);

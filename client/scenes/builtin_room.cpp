@@ -29,6 +29,16 @@ std::vector<Object> room_objects() {
       still_object(7, "red block", lacquer, {box_part({0.5, 0.7, 0.5}, glm::dvec3(0.0), 25.0)})};
 }
 
+/// A panel that lies flat under the ceiling: no surface comes near its bright side.
+Transform below_ceiling(double x) { return look_at({x, 2.79, -1.6}, {x, 0.0, -1.6}); }
+
+SceneLight ceiling_panel() {
+  SceneLight panel;
+  panel.light = {.id = 0, .shape = LightShape::kRectangle, .width = 0.8, .height = 0.5};
+  panel.emission = {58.0, 54.0, 46.0};
+  return panel;
+}
+
 }  // namespace
 
 Scene room_scene() {
@@ -40,10 +50,9 @@ Scene room_scene() {
   scene.camera.motion.repeat = Repeat::kMirror;
   scene.objects = room_objects();
   scene.objects.back().motion = to_and_fro({-1.8, 0.36, 1.1}, {0.4, 0.36, 1.6}, 70.0);
-  scene.lights = {rectangle_at({0.0, 2.7, -1.6}, {0.0, 0.0, 0.4}, 0.8, 0.5, {58.0, 54.0, 46.0})};
-  const glm::dvec3 target(0.0, 0.0, 0.6);
-  scene.lights[0].motion.keys = {{0.0, look_at({-1.4, 2.7, -1.6}, target), false},
-                                 {70.0, look_at({1.4, 2.7, -1.6}, target), false}};
+  scene.lights = {ceiling_panel()};
+  scene.lights[0].motion.keys = {{0.0, below_ceiling(-1.4), false},
+                                 {70.0, below_ceiling(1.4), false}};
   scene.lights[0].motion.repeat = Repeat::kMirror;
   return scene;
 }
@@ -53,8 +62,8 @@ Scene cut_scene() {
   scene.name = "cut";
   scene.camera.motion = Motion(look_at({-1.0, 1.5, 4.4}, {0.1, 0.7, 0.0}));
   scene.camera.motion.keys.push_back({30.0, look_at({2.2, 1.9, 3.2}, {-0.2, 0.5, 0.2}), true});
-  scene.lights[0].motion = Motion(look_at({-0.8, 2.7, -1.6}, {0.0, 0.0, 0.6}));
-  SceneLight lamp = rectangle_at({2.2, 2.5, 2.0}, {0.0, 0.2, 0.6}, 0.5, 0.5, {26.0, 34.0, 52.0});
+  scene.lights[0].motion = Motion(below_ceiling(-0.8));
+  SceneLight lamp = rectangle_at({2.2, 2.1, 2.0}, {0.0, 0.2, 0.6}, 0.5, 0.5, {26.0, 34.0, 52.0});
   lamp.light.id = 1;
   lamp.from_frame = 60.0;
   scene.lights.push_back(lamp);

@@ -6,6 +6,7 @@
 
 #include "client/scenes/sampling.h"
 #include "core/frame/conventions.h"
+#include "core/shading/ltc.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -59,12 +60,9 @@ glm::dvec3 evaluate_lobe(const Surface& surface, const glm::dvec3& to_light, dou
 
 glm::dvec3 specular_factor(const Surface& surface) {
   if (!surface.has_lobe()) return glm::dvec3(0.0);
-  const double r = surface.roughness;
-  const double nv = std::clamp(glm::dot(surface.normal, surface.to_viewer), 0.0, 1.0);
-  const glm::dvec4 k =
-      r * glm::dvec4(-1.0, -0.0275, -0.572, 0.022) + glm::dvec4(1.0, 0.0425, 1.04, -0.04);
-  const double a004 = std::min(k.x * k.x, std::exp2(-9.28 * nv)) * k.x + k.y;
-  return glm::max(glm::dvec3(1e-4), surface.specular * (-1.04 * a004 + k.z) + (1.04 * a004 + k.w));
+  const LtcLobe<double> lobe =
+      ltc_lobe(surface.roughness, glm::dot(surface.normal, surface.to_viewer));
+  return glm::max(glm::dvec3(1e-4), directional_albedo(lobe, surface.specular));
 }
 
 LobeSample sample_lobe(const Surface& surface, const glm::dvec2& u) {

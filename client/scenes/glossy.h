@@ -10,8 +10,8 @@ namespace holdfast::scenes {
 /// `roughness` is perceptual, 0..1.
 glm::dvec3 evaluate_lobe(const Surface& surface, const glm::dvec3& to_light, double roughness);
 
-/// The factor `specular` of the composite: about the lobe's directional albedo, noise-free
-/// (Karis' analytic fit, 2014). 0 where the material has no lobe.
+/// The factor `specular` of the composite: the lobe's directional albedo, noise-free, from the
+/// table of core/shading/ltc.h. 0 where the material has no lobe.
 glm::dvec3 specular_factor(const Surface& surface);
 
 struct LobeSample {

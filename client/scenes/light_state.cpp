@@ -1,8 +1,11 @@
 #include "client/scenes/light_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "client/scenes/spherical_rectangle.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -27,6 +30,9 @@ double projected_area(const LightState& state, const glm::dvec3& to_light, const
   }
   return 0.0;
 }
+
+// Farther than this many areas of squared distance, a uniform sample of the area is as good.
+constexpr double kNearAreas = 4.0;
 
 }  // namespace
 
@@ -62,6 +68,26 @@ LightSample sample_light(const LightState& light, const glm::dvec3& point, const
   sample.distance_m = std::sqrt(distance2);
   sample.direction = offset / sample.distance_m;
   sample.geometry = projected_area(light, sample.direction, place) / distance2;
+  return sample;
+}
+
+LightSample sample_irradiance_of(const LightState& light, const glm::dvec3& point,
+                                 const glm::dvec2& uv) {
+  if (light.light.shape != LightShape::kRectangle) return sample_light(light, point, uv);
+  const glm::dmat3 axes(light.world_from_light);
+  const glm::dvec3 centre(light.world_from_light[3]);
+  const glm::dvec3 p = glm::transpose(axes) * (point - centre);
+  LightSample sample;
+  if (p.z >= 0.0) return sample;  // behind the light
+  const double x = 0.5 * light.light.width, y = 0.5 * light.light.height;
+  const double dx = std::max(0.0, std::abs(p.x) - x), dy = std::max(0.0, std::abs(p.y) - y);
+  if (dx * dx + dy * dy + p.z * p.z > kNearAreas * 4.0 * x * y)
+    return sample_light(light, point, uv);
+  const SphericalRectangle seen(-x - p.x, x - p.x, -y - p.y, y - p.y, -p.z);
+  const glm::dvec3 offset = axes * glm::dvec3(seen.at(uv), -p.z);
+  sample.distance_m = glm::length(offset);
+  sample.direction = offset / sample.distance_m;
+  sample.geometry = seen.solid_angle();
   return sample;
 }
 

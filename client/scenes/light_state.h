@@ -33,4 +33,10 @@ struct LightSample {
 /// light faces away.
 LightSample sample_light(const LightState& light, const glm::dvec3& point, const glm::dvec2& uv);
 
+/// A sample of the light for an estimate of the irradiance at `point`: as `sample_light`, but near
+/// a rectangle `uv` in [0,1]^2 is uniform in solid angle, and geometry is that angle. It stays
+/// bounded where area over distance squared grows without limit.
+LightSample sample_irradiance_of(const LightState& light, const glm::dvec3& point,
+                                 const glm::dvec2& uv);
+
 }  // namespace holdfast::scenes

@@ -14,7 +14,10 @@ namespace {
 
 constexpr double kLeastAcceptance = 0.125;   // of the proven bound, else the grid is cheaper
 constexpr double kLeastGridRoughness = 0.2;  // a highlight still spans cells of the grid
-constexpr int kMostTries = 512;              // (7/8)^512 = 2e-30: never reached
+// Of the light on a facing surface; a thinner sliver above the horizon counts as none, as no number
+// of samples would tell how much of it is blocked.
+constexpr double kLeastShare = 1e-4;
+constexpr int kMostTries = 512;  // (7/8)^512 = 2e-30: never reached
 
 /// The rectangle light's corner (+-1, +-1) relative to `point`, world space.
 glm::dvec3 corner(const LightState& light, double x, double y, const glm::dvec3& point) {
@@ -84,6 +87,9 @@ LightTarget::LightTarget(const LightState& light, const Surface& surface)
   double irradiance = 0.0;
   if (rectangle) irradiance = rectangle_irradiance(light, surface.position, surface.normal);
   if (rectangle && irradiance <= 0.0) return;
+  if (rectangle && !lobe_ &&
+      irradiance < kLeastShare * sample_light(light, surface.position, {0.5, 0.5}).geometry)
+    return;
   const glm::dvec3 diffuse = light.emission * surface.albedo * (irradiance / std::numbers::pi);
   if (rectangle && !lobe_) {
     unshadowed_ = diffuse;

@@ -25,6 +25,9 @@ double rectangle_irradiance(const LightState& light, const glm::dvec3& point,
 /// `draw` samples with density f / integral f, so the mean of noisy visibilities in {0,1} is V; the
 /// reference averages visible(u,v) with weights f over strata. The same f serves both.
 ///
+/// On surfaces without a lobe, a rectangle that sends less than 1e-4 of what a facing surface gets
+/// does not reach.
+///
 /// f is drawn from by rejection. For diffuse surfaces under a rectangle the bound is proven:
 ///     f <= max over corners of n.(l-s) * height of s over the light's plane / smallest distance^4.
 /// Otherwise (other shapes, lobes, or where that bound accepts less than an eighth) a grid of

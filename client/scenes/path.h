@@ -6,7 +6,6 @@
 #include <glm/glm.hpp>
 
 #include "client/scenes/light_state.h"
-#include "client/scenes/rng.h"
 #include "client/scenes/scene.h"
 #include "client/scenes/world.h"
 
@@ -19,9 +18,11 @@ struct Incident {
 };
 
 /// Radiance that arrives at `origin` along a unit direction: a path of up to three surfaces, with
-/// one shadow ray to each light at each. Surfaces met on the way are shaded as diffuse ones that
-/// reflect albedo + specular. Lights themselves are not seen.
+/// one shadow ray to each light at each. Surfaces met on the way are shaded as diffuse ones
+/// that reflect albedo + specular. Lights themselves are not seen. `Numbers` is `Rng` or
+/// `PathPoints`.
+template <class Numbers>
 Incident trace_path(const Scene& scene, const World& world, const std::vector<LightState>& lights,
-                    const glm::dvec3& origin, const glm::dvec3& direction, Rng& rng);
+                    const glm::dvec3& origin, const glm::dvec3& direction, Numbers& numbers);
 
 }  // namespace holdfast::scenes

@@ -1,50 +1,16 @@
 #include "client/scenes/reference_frame.h"
 
+#include <optional>
+
 #include <tbb/parallel_for.h>
 
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
-#include "client/scenes/path.h"
 #include "client/scenes/pixel_writer.h"
+#include "client/scenes/reference_radiance.h"
 #include "client/scenes/reference_visibility.h"
-#include "client/scenes/sampling.h"
 
 namespace holdfast::scenes {
-namespace {
-
-// Apart from the streams of noisy frames.
-enum Stream : std::uint64_t { kGlossyStream = 1ull << 32, kIndirectStream };
-
-Rng rng_of(const View& view, int x, int y, std::uint64_t stream) {
-  return {view.seed, 0,
-          static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(view.width) +
-              static_cast<std::uint64_t>(x),
-          stream};
-}
-
-glm::dvec3 reference_glossy(const View& view, const Surface& surface, int side, Rng rng) {
-  if (!surface.has_lobe()) return glm::dvec3(0.0);
-  glm::dvec3 sum(0.0);
-  for (int i = 0; i < side * side; ++i) {
-    const LobeSample lobe = sample_lobe(surface, stratified(i, side, rng.next2()));
-    if (lobe.direction == glm::dvec3(0.0)) continue;
-    sum += lobe.weight *
-           trace_path(view.scene, view.world, view.lights, surface.origin, lobe.direction, rng)
-               .radiance;
-  }
-  return sum / static_cast<double>(side * side);
-}
-
-glm::dvec3 reference_indirect(const View& view, const Surface& surface, int side, Rng rng) {
-  glm::dvec3 sum(0.0);
-  for (int i = 0; i < side * side; ++i) {
-    const glm::dvec3 direction = sample_cosine(surface.normal, stratified(i, side, rng.next2()));
-    sum += trace_path(view.scene, view.world, view.lights, surface.origin, direction, rng).radiance;
-  }
-  return sum / static_cast<double>(side * side);
-}
-
-}  // namespace
 
 PlaneSet render_reference(const View& view, int spp) {
   const SceneComponents& wanted = view.scene.components;
@@ -64,7 +30,8 @@ PlaneSet render_reference(const View& view, int spp) {
     indirect_plane = {planes, {PlaneKind::kIndirect, {}}, view.width, view.height};
   const PixelWriter composite(planes, {PlaneKind::kComposite, {}}, view.width, view.height);
 
-  const int side = strata_side(spp);
+  std::optional<ReferenceRadiance> radiance;
+  if (wanted.glossy || wanted.indirect) radiance.emplace(view, spp);
   tbb::parallel_for(0, view.height, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const auto primary = primary_at(view, x, y);
@@ -78,14 +45,12 @@ PlaneSet render_reference(const View& view, int spp) {
         sum += LightTarget(view.lights[k], surface).unshadowed() *
                static_cast<double>(visibility[k].at(x, y));
       if (wanted.glossy) {
-        const glm::dvec3 value =
-            reference_glossy(view, surface, side, rng_of(view, x, y, kGlossyStream));
+        const glm::dvec3 value = radiance->glossy(x, y, surface);
         glossy_plane.set(x, y, value);
         sum += specular_factor(surface) * value;
       }
       if (wanted.indirect) {
-        const glm::dvec3 value =
-            reference_indirect(view, surface, side, rng_of(view, x, y, kIndirectStream));
+        const glm::dvec3 value = radiance->indirect(x, y, surface);
         indirect_plane.set(x, y, value);
         sum += surface.albedo * value;
       }

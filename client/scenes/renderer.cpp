@@ -41,14 +41,11 @@ Scene checked(Scene scene, const RenderSettings& settings) {
   return scene;
 }
 
-/// Adds what moved or appeared between two times; everything there is if `all`.
-template <class Item>
-void fill_table(TransformTable& table, std::uint32_t id, const Item& item, double before,
-                double now, bool all) {
-  if (now < item.from_frame) return;
-  const glm::dmat4 matrix = item.motion.at(now).matrix();
-  if (all || before < item.from_frame || matrix != item.motion.at(before).matrix())
-    table[id] = matrix;
+/// Adds what moved between two times; in any case if `anyway`.
+void fill_table(TransformTable& table, std::uint32_t id, const Motion& motion, double before,
+                double now, bool anyway) {
+  const glm::dmat4 matrix = motion.at(now).matrix();
+  if (anyway || matrix != motion.at(before).matrix()) table[id] = matrix;
 }
 
 template <class Item>
@@ -102,9 +99,12 @@ Frame Renderer::frame(std::int64_t index) {
   frame.cut = !is_first && scene_.camera.motion.jumps(before, now);
   frame.camera = camera_at(scene_, now, settings_.width, settings_.height);
   for (const Object& object : scene_.objects)
-    fill_table(frame.objects, object.id, object, before, now, is_first);
+    if (now >= object.from_frame)
+      fill_table(frame.objects, object.id, object.motion, before, now,
+                 is_first || before < object.from_frame);
+  // A dark light is there all the same: tables tell of motion, not of brightness.
   for (const SceneLight& light : scene_.lights)
-    fill_table(frame.lights, light.light.id, light, before, now, is_first);
+    fill_table(frame.lights, light.light.id, light.motion, before, now, is_first);
   const View view = view_at(now, index);
   if (!settings_.gradients) {
     frame.planes = render_noisy(view, settings_.spp);

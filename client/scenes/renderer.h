@@ -36,8 +36,9 @@ class Renderer {
   std::vector<Light> lights() const;
   std::vector<std::pair<std::uint32_t, std::string>> objects() const;
 
-  /// Noisy frame `index` with camera, transforms (all in the first frame, later those that moved or
-  /// appeared since frame index - 1), the planes of `render_noisy`, and gradient planes against
+  /// Noisy frame `index` with camera, transforms (all in the first frame, later those of what moved
+  /// since frame index - 1 and of objects that appeared; lights are there from the first frame on,
+  /// switched on or not), the planes of `render_noisy`, and gradient planes against
   /// frame index - 1. These are (0, 0), no samples, in the first frame, at cuts, and where nothing
   /// has moved.
   Frame frame(std::int64_t index);

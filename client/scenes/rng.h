@@ -21,11 +21,12 @@ class Rng {
       : state_(
             mix_bits(seed + kStep * mix_bits(frame + kStep * mix_bits(pixel + kStep * stream)))) {}
 
-  /// Uniform in [0, 1).
-  double next() {
+  std::uint64_t bits() {
     state_ += kStep;
-    return static_cast<double>(mix_bits(state_) >> 11) * 0x1.0p-53;
+    return mix_bits(state_);
   }
+  /// Uniform in [0, 1).
+  double next() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
   glm::dvec2 next2() {
     const double u = next();
     return {u, next()};

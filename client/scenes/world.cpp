@@ -42,6 +42,23 @@ void set_ray(RTCRay& ray, const glm::dvec3& origin, const glm::dvec3& direction,
   ray.mask = ~0u;
 }
 
+alignas(32) constexpr int kAllValid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+
+void set_rays(RTCRay8& query, const glm::dvec3& origin, const RayBatch& rays) {
+  static_assert(RayBatch::kSize == 8);
+  const glm::vec3 o(origin);
+  for (std::size_t i = 0; i < 8; ++i) {
+    query.org_x[i] = o.x, query.org_y[i] = o.y, query.org_z[i] = o.z;
+    query.dir_x[i] = rays.x[i], query.dir_y[i] = rays.y[i], query.dir_z[i] = rays.z[i];
+    query.tnear[i] = 0.0f;
+    query.tfar[i] = rays.length[i];
+    query.time[i] = 0.0f;
+    query.mask[i] = ~0u;
+    query.id[i] = 0;
+    query.flags[i] = 0;
+  }
+}
+
 }  // namespace
 
 // Triangles are kept in world space in one tree: for scenes of this size a rebuild when something
@@ -160,21 +177,26 @@ bool World::occluded(const glm::dvec3& origin, const glm::dvec3& direction, doub
   return ray.tfar < 0.0f;
 }
 
-unsigned World::occluded(const glm::dvec3& origin, const RayBatch& rays) const {
-  static_assert(RayBatch::kSize == 8);
-  alignas(32) static constexpr int kAllValid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  RTCRay8 query;
-  const glm::vec3 o(origin);
+void World::nearest(const glm::dvec3& origin, const RayBatch& rays, HitBatch& out) const {
+  RTCRayHit8 query;
+  set_rays(query.ray, origin, rays);
+  for (std::size_t i = 0; i < 8; ++i) query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect8(kAllValid, state_->tree.get(), &context, &query);
   for (std::size_t i = 0; i < 8; ++i) {
-    query.org_x[i] = o.x, query.org_y[i] = o.y, query.org_z[i] = o.z;
-    query.dir_x[i] = rays.x[i], query.dir_y[i] = rays.y[i], query.dir_z[i] = rays.z[i];
-    query.tnear[i] = 0.0f;
-    query.tfar[i] = rays.length[i];
-    query.time[i] = 0.0f;
-    query.mask[i] = ~0u;
-    query.id[i] = 0;
-    query.flags[i] = 0;
+    const bool is_hit = query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    out.object[i] = is_hit ? query.hit.geomID[i] : HitBatch::kNone;
+    out.distance[i] = query.ray.tfar[i];
+    out.normal_x[i] = query.hit.Ng_x[i];
+    out.normal_y[i] = query.hit.Ng_y[i];
+    out.normal_z[i] = query.hit.Ng_z[i];
   }
+}
+
+unsigned World::occluded(const glm::dvec3& origin, const RayBatch& rays) const {
+  RTCRay8 query;
+  set_rays(query, origin, rays);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

@@ -38,6 +38,8 @@ class World {
   /// The nearest hit of the ray within `max_m` metres. `direction` is unit.
   std::optional<Hit> nearest(const glm::dvec3& origin, const glm::dvec3& direction,
                              double max_m) const;
+  /// The same for a batch of rays from one origin, to the ends that the batch states.
+  void nearest(const glm::dvec3& origin, const RayBatch& rays, HitBatch& out) const;
   /// True if something lies on the ray before `max_m` metres. `direction` is unit.
   bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double max_m) const;
   /// The same for a batch of rays from one origin; bit i of the result is ray i.

@@ -25,9 +25,12 @@ void write_matrix(const glm::dmat4& matrix, v1::Matrix4& out) {
   out.mutable_values()->Assign(values, values + 16);
 }
 
-void write_transforms(const TransformTable& table,
+/// `own` and what of `older` it does not name.
+void write_transforms(const TransformTable& own, const TransformTable& older,
                       google::protobuf::RepeatedPtrField<v1::Transform>& out) {
-  for (const auto& [id, matrix] : table) {
+  TransformTable all = own;
+  all.insert(older.begin(), older.end());
+  for (const auto& [id, matrix] : all) {
     v1::Transform& transform = *out.Add();
     transform.set_id(id);
     write_matrix(matrix, *transform.mutable_world_from_local());
@@ -60,8 +63,10 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
   for (const PlaneId id : options.results) request.add_result_planes(plane_name(id));
 }
 
-void write_frame_begin(const Frame& frame, const std::vector<PlaneId>& planes,
+void write_frame_begin(const OutgoingFrame& out, const std::vector<PlaneId>& planes,
                        v1::FrameBegin& begin) {
+  const Frame& frame = *out.frame;
+  begin.set_epoch(out.epoch);
   begin.set_index(frame.index);
   begin.set_cut(frame.cut);
   v1::Camera& camera = *begin.mutable_camera();
@@ -69,14 +74,14 @@ void write_frame_begin(const Frame& frame, const std::vector<PlaneId>& planes,
   write_matrix(frame.camera.clip_from_view, *camera.mutable_clip_from_view());
   camera.set_jitter_x_px(frame.camera.jitter_px.x);
   camera.set_jitter_y_px(frame.camera.jitter_px.y);
-  write_transforms(frame.objects, *begin.mutable_objects());
-  write_transforms(frame.lights, *begin.mutable_lights());
+  write_transforms(frame.objects, out.objects, *begin.mutable_objects());
+  write_transforms(frame.lights, out.lights, *begin.mutable_lights());
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Plane& plane = frame.planes.at(planes[i]);
-    v1::FramePlane& out = *begin.add_planes();
-    out.set_plane(static_cast<std::uint32_t>(i));
-    out.set_width_px(static_cast<std::uint32_t>(plane.width()));
-    out.set_height_px(static_cast<std::uint32_t>(plane.height()));
+    v1::FramePlane& announced = *begin.add_planes();
+    announced.set_plane(static_cast<std::uint32_t>(i));
+    announced.set_width_px(static_cast<std::uint32_t>(plane.width()));
+    announced.set_height_px(static_cast<std::uint32_t>(plane.height()));
   }
 }
 
@@ -100,6 +105,7 @@ void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
   for (const v1::RepairCount& repair : result.repaired())
     output.repaired.push_back({repair.plane(), repair.values()});
   output.non_finite_out = result.non_finite_out();
+  output.repeated = result.repeated();
 }
 
 void check_planes(const Frame& frame, const std::vector<PlaneId>& planes, int width, int height) {

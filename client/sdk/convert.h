@@ -2,6 +2,7 @@
 
 #include <holdfast/client.h>
 
+#include "client/sdk/exchange.h"
 #include "holdfast/v1/denoise_service.pb.h"
 #include "holdfast/v1/session_service.pb.h"
 
@@ -11,7 +12,7 @@ namespace holdfast::client {
 void write_create_request(const SessionOptions& options, v1::CreateSessionRequest& request);
 
 /// Everything of a frame but its planes' data.
-void write_frame_begin(const Frame& frame, const std::vector<PlaneId>& planes,
+void write_frame_begin(const OutgoingFrame& frame, const std::vector<PlaneId>& planes,
                        v1::FrameBegin& begin);
 
 /// Everything of an answer but its planes' data.

@@ -12,15 +12,15 @@ bool FrameSender::next(v1::DenoiseRequest& request) {
   if (!begun_) {
     begun_ = true;
     request.Clear();
-    write_frame_begin(*frame_, planes_, *request.mutable_frame_begin());
+    write_frame_begin(out_, planes_, *request.mutable_frame_begin());
     return true;
   }
   if (plane_ == planes_.size()) {
     ended_ = true;
-    request.mutable_frame_end()->set_index(frame_->index);
+    request.mutable_frame_end()->set_index(out_.frame->index);
     return true;
   }
-  const Plane& plane = frame_->planes.at(planes_[plane_]);
+  const Plane& plane = out_.frame->planes.at(planes_[plane_]);
   const std::size_t size = wire::plane_bytes(plane);
   const std::size_t bytes = std::min(wire::kMaxChunkBytes, size - offset_);
   v1::PlaneChunk& chunk = *request.mutable_plane_chunk();  // keeps the buffer of the chunk before

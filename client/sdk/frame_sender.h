@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/frame/frame.h"
+#include "client/sdk/exchange.h"
 #include "holdfast/v1/denoise_service.pb.h"
 
 namespace holdfast::client {
@@ -12,14 +12,14 @@ namespace holdfast::client {
 /// Turns one frame into messages: FrameBegin, the chunks of each plane, FrameEnd.
 class FrameSender {
  public:
-  FrameSender(std::shared_ptr<const Frame> frame, const std::vector<PlaneId>& planes)
-      : frame_(std::move(frame)), planes_(planes) {}
+  FrameSender(OutgoingFrame frame, const std::vector<PlaneId>& planes)
+      : out_(std::move(frame)), planes_(planes) {}
 
   /// Writes the next message to `request`; false if there is none left.
   bool next(v1::DenoiseRequest& request);
 
  private:
-  std::shared_ptr<const Frame> frame_;
+  const OutgoingFrame out_;
   const std::vector<PlaneId>& planes_;
   bool begun_ = false, ended_ = false;
   std::size_t plane_ = 0, offset_ = 0;

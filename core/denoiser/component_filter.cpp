@@ -32,15 +32,20 @@ constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-20f;
 
-/// The footprint of a window that must find what the filter's would blur: a third of its variance.
-const Channels<float>& sharpened_footprint(int height, Scratch& s) {
-  constexpr float kPrecision = 3.0f;
+// How narrow the window of the differences from history is, as a multiple of the precision of the
+// filter's footprint. That of reflections must find what the filter's would blur; that of shadows
+// leaves out what other penumbrae do. Ours, tuned on glossy-floor, and on fence and cylinder.
+constexpr float kVisibilityWindowPrecision = 0.15f;
+constexpr float kRadianceWindowPrecision = 3.0f;
+
+/// The footprint with `precision` times its precision.
+const Channels<float>& scaled_footprint(int height, float precision, Scratch& s) {
   Channels<float>& out = s.filter.footprint;  // free until the filter runs
   for_each_row(height, [&](int y) {
     for (int c = 0; c < 3; ++c) {
       const float* in = std::as_const(s.footprint)[c].row(y);
       float* to = out[c].row(y);
-      for (int x = 0; x < out.width(); ++x) to[x] = kPrecision * in[x];
+      for (int x = 0; x < out.width(); ++x) to[x] = precision * in[x];
     }
   });
   return out;
@@ -224,18 +229,26 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   const ComponentHistory& before = history_[1 - now_];
   ComponentHistory& now = history_[now_];
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
+  changed_share_ = 0;
   if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
-    if (channels_ == 1)
+    const Channels<float>* window = nullptr;
+    if (has_footprint_)
+      window = &scaled_footprint(
+          input.frames.now.view.height,
+          channels_ == 1 ? kVisibilityWindowPrecision : kRadianceWindowPrecision, s);
+    if (channels_ == 1) {
+      ExpectedErrorRule rule = recipe_.visibility_blend;
+      rule.change.noticed &= shadows_at_rest(input);
       blend_by_expected_error(input.frames.now, s.noisy, sources,
-                              std::as_const(s.means)[kSampleVariance], recipe_.visibility_blend,
-                              before, s.blend, s.window, now, debug);
-    else {
-      const Channels<float>* window = nullptr;
-      if (has_footprint_) window = &sharpened_footprint(input.frames.now.view.height, s);
+                              std::as_const(s.means)[kSampleVariance], window, rule, before,
+                              s.blend, s.window, now, debug);
+      changed_share_ = s.blend.change.share();
+    } else {
       blend_radiance(
           input.frames.now, s.noisy, sources, window,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
+      changed_share_ = s.radiance_blend.change.share();
     }
   } else {
     AccumulationRule rule = recipe_.accumulation;
@@ -246,6 +259,12 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
     accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
     if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
+}
+
+/// Whatever else moves, the shadows of this light stand still: a change is one of the light.
+bool ComponentFilter::shadows_at_rest(const ComponentInput& input) const {
+  const SceneMotion& scene = input.frames.scene;
+  return scene.geometry_at_rest() && scene.light(component_.light).at_rest;
 }
 
 void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out) {

@@ -57,6 +57,8 @@ class ComponentFilter {
   Component component() const { return component_; }
   /// Mean of the samples behind the pixels on surfaces, after the last frame.
   double mean_history_frames() const { return mean_history_frames_; }
+  /// Share of the tiles whose light has changed though nothing moved, in the last frame.
+  double changed_share() const { return changed_share_; }
   std::size_t history_bytes() const {
     return history_[0].data.bytes() + history_[1].data.bytes() + cones_.bytes();
   }
@@ -64,6 +66,7 @@ class ComponentFilter {
  private:
   void correct_by_cones(const ComponentInput& input, Scratch& s);
   bool follows_effect(const ComponentInput& input) const;
+  bool shadows_at_rest(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void blend(const ComponentInput& input, bool follows, Scratch& s);
@@ -78,7 +81,7 @@ class ComponentFilter {
   ComponentHistory history_[2];
   int now_ = 0;  ///< index of the history that the current frame writes
   std::vector<double> row_samples_, row_pixels_;
-  double mean_history_frames_ = 0;
+  double mean_history_frames_ = 0, changed_share_ = 0;
 };
 
 }  // namespace holdfast

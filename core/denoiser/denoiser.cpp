@@ -140,6 +140,8 @@ class Denoiser::Impl {
     component_filter.run(input, scratch, results.add(id, config.width, config.height));
     report.mean_history_frames +=
         component_filter.mean_history_frames() / static_cast<double>(filters.size());
+    if (component_filter.changed_share() > 0)
+      report.changes.push_back({entry.component, component_filter.changed_share()});
     if (config.debug_planes) write_debug(entry.component, results);
   }
 

@@ -35,15 +35,23 @@ struct RepairCount {
   std::uint64_t values = 0;
 };
 
+/// Share of a component's image in which light changed though nothing moved, so that its history
+/// was corrected or left: a light was switched, or a cut was not announced.
+struct NoticedChange {
+  Component component;
+  double share = 0;  ///< of its tiles, above 0 .. 1
+};
+
 /// What happened to one frame.
 struct FrameReport {
   std::int64_t index = 0;
   double ms = 0;  ///< wall time inside the core
   std::vector<StageTime> stages;
-  bool history_reset = false;         ///< first frame, cut or reset
-  double mean_history_frames = 0;     ///< over surface pixels, all components
-  std::vector<RepairCount> repaired;  ///< depth, normal, signal and gradient planes with repairs
-  std::uint64_t non_finite_out = 0;   ///< always 0; counted, not assumed
+  bool history_reset = false;          ///< first frame, cut or reset
+  std::vector<NoticedChange> changes;  ///< where the recipe looks for them; most frames: none
+  double mean_history_frames = 0;      ///< over surface pixels, all components
+  std::vector<RepairCount> repaired;   ///< depth, normal, signal and gradient planes with repairs
+  std::uint64_t non_finite_out = 0;    ///< always 0; counted, not assumed
 };
 
 /// Filters the frames of one session in order. Owns the history; allocates no image per frame after

@@ -24,6 +24,10 @@ Recipe make_reliable() {
   reliable.glossy = GlossyVectors::kRelative;
   reliable.indirect = DisocclusionVectors::kDual;
   reliable.indirect_basis = RadianceBasis::kConesLuminance;
+  reliable.visibility_blend.change.noticed = reliable.glossy_blend.change.noticed =
+      reliable.indirect_blend.change.noticed = true;
+  // Indirect light changes everywhere or nowhere, and too little to show in one tile.
+  reliable.indirect_blend.change.frame_share = 0.02f;
   return reliable;
 }
 
@@ -46,6 +50,9 @@ std::vector<Recipe> make_ablated() {
     rule->rest_threshold = rule->noise_threshold;
   }
   rest.visibility_blend.rest_threshold = rest.visibility_blend.slow_threshold = 0.0f;
+  Recipe& unnoticed = without("light-changes");
+  unnoticed.visibility_blend.change.noticed = unnoticed.glossy_blend.change.noticed =
+      unnoticed.indirect_blend.change.noticed = false;
   // Bias then counts as noise does: the plain expected error.
   Recipe& weighing = without("weight-of-bias");
   weighing.visibility_blend.spatial_samples = weighing.glossy_blend.spatial_samples =

@@ -32,6 +32,18 @@ void gather_candidates(const Guides& guides, const Channels<float>& noisy,
   });
 }
 
+/// Where light has changed, there are no candidates.
+void drop_changed(BlendScratch& s) {
+  if (!(s.change.share() > 0)) return;
+  for_each_row(s.candidates.height(), [&](int y) {
+    for (const int slot : {kSurface, kShadow}) {
+      float* samples = s.candidates[kSamples + slot].row(y);
+      for (int x = 0; x < s.candidates.width(); ++x)
+        if (s.change.changed(x, y)) samples[x] = 0.0f;
+    }
+  });
+}
+
 /// The last step: chooses the candidate of each pixel and blends.
 struct Blend {
   const Channels<float>& noisy;
@@ -96,15 +108,22 @@ struct Blend {
 void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
                              const HistorySources& sources,
                              ChannelView<const float> sample_variance,
-                             const ExpectedErrorRule& rule, const ComponentHistory& before,
-                             BlendScratch& s, WindowScratch& window, ComponentHistory& now,
-                             Channels<float>* debug) {
+                             const Channels<float>* footprint, const ExpectedErrorRule& rule,
+                             const ComponentHistory& before, BlendScratch& s, WindowScratch& window,
+                             ComponentHistory& now, Channels<float>* debug) {
   gather_candidates(guides, noisy, sources, before, s);
   const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
                                                    std::as_const(s.differences)[kShadow]};
+  if (rule.change.noticed) {  // by the surface's: nothing moves
+    s.change.measure(guides, {s.candidates, s.differences, kSurface, 1, kSamples + kSurface},
+                     rule.change);
+    drop_changed(s);
+  } else {
+    s.change.clear();
+  }
   s.activity.measure(guides, differences, 1 + rule.window_step, 0.0f, true);
-  const auto spread =
-      window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0, &s.activity);
+  const auto spread = window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0,
+                                   &s.activity, footprint);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { blend.row(y); });
 }

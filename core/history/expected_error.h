@@ -1,15 +1,16 @@
 #pragma once
 
 #include "core/history/component_history.h"
+#include "core/history/light_change.h"
 #include "core/spatial/window.h"
 
 namespace holdfast {
 
 /// Constants of the blend by expected error. All ours; tuned on fence and cylinder at two speeds.
 struct ExpectedErrorRule {
-  int window_step = 2;           ///< window of the bias estimate: 3 + 2 step pixels wide
-  float noise_threshold = 0.4f;  ///< share of a window mean's variance that is not taken for bias
-  float slow_threshold = 6.0f;   ///< added where a shadow moves slowly over its surface ...
+  int window_step = 3;           ///< window of the bias estimate: 3 + 2 step pixels wide
+  float noise_threshold = 0.2f;  ///< share of a window mean's variance that is not taken for bias
+  float slow_threshold = 3.0f;   ///< added where a shadow moves slowly over its surface ...
   float slow_move = 0.05f;       ///< ... falling by 1/e with this much of a penumbra a frame
   float rest_threshold = 20.0f;  ///< added where it does not move at all ...
   float rest_move = 0.003f;      ///< ... falling by 1/e with this much (rounding, not sliding)
@@ -19,6 +20,7 @@ struct ExpectedErrorRule {
       10;                   ///< the surface vector must promise this much less error to replace
                             ///< the shadow vector: the smallest of two estimates flatters itself
   float most_samples = 64;  ///< cap of the samples credited to history
+  LightChangeRule change;   ///< where that is found, history is left
 };
 
 /// Scratch of `blend_by_expected_error`.
@@ -27,13 +29,15 @@ struct BlendScratch {
   Channels<float> differences;  ///< candidate minus noisy
   Channels<float> bias;         ///< their local means
   ActivityMap activity;         ///< of the differences
+  LightChange change;
 
   BlendScratch() = default;
   BlendScratch(int width, int height)
       : candidates(width, height, 4),
         differences(width, height, 2),
         bias(width, height, 2),
-        activity(width, height) {}
+        activity(width, height),
+        change(width, height) {}
   std::size_t bytes() const { return candidates.bytes() + differences.bytes() + bias.bytes(); }
 };
 
@@ -50,13 +54,14 @@ struct BlendScratch {
 /// (k/(1+k))^2/n' with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial
 /// filter that follows averages noise away, and bias not. Without a candidate, out = noisy and N =
 /// 1, so that a history that fits nowhere leaves exactly the spatial filter.
+/// With a `footprint` (see window_means) the window follows it; null: a square.
 ///   reads noisy, `before`, `sample_variance` | writes `now`, `debug` (may be null) | halo of the
 ///   window
 void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
                              const HistorySources& sources,
                              ChannelView<const float> sample_variance,
-                             const ExpectedErrorRule& rule, const ComponentHistory& before,
-                             BlendScratch& scratch, WindowScratch& window, ComponentHistory& now,
-                             Channels<float>* debug);
+                             const Channels<float>* footprint, const ExpectedErrorRule& rule,
+                             const ComponentHistory& before, BlendScratch& scratch,
+                             WindowScratch& window, ComponentHistory& now, Channels<float>* debug);
 
 }  // namespace holdfast

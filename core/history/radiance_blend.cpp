@@ -10,7 +10,8 @@ namespace holdfast {
 namespace {
 
 constexpr int kStep = RadianceBlendScratch::kPerCandidate;
-constexpr int kSquare = 3;  // of a difference
+constexpr int kSquare = 3;           // of a difference
+constexpr int kSamples = kStep - 1;  // channel of a candidate
 
 /// The candidates of each pixel, and what they are blended with.
 struct RadianceBlend {
@@ -59,11 +60,20 @@ struct RadianceBlend {
                        1 + rule.window_step, 0.0f, true);
   }
 
+  /// Of the first candidate, which in a scene at rest leads nowhere else.
+  void look_for_changes(const Guides& guides) const {
+    if (at_rest && rule.change.noticed)
+      s.change.measure(guides, {s.candidates, s.differences[0], 0, 3, kSamples}, rule.change);
+    else
+      s.change.clear();
+  }
+
   void blend_row(int y, const float* spread) const {
     Taps own[kTapBlock];
     float chosen[kTapBlock], samples[kTapBlock], weight[kTapBlock];
-    for (int x = 0; x < noisy.width(); x += kTapBlock) {
-      const int count = std::min(kTapBlock, noisy.width() - x);
+    for (int x = 0, count = 0; x < noisy.width(); x += count) {
+      count = s.change.run(x, y, std::min(kTapBlock, noisy.width() - x));
+      const bool rests = at_rest && !s.change.changed(x, y);
       const Taps* first = taps_of(0, x, y, count, own);
       const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
       blend_candidates({{first, second},
@@ -76,8 +86,8 @@ struct RadianceBlend {
                         s,
                         spread + x,
                         rule,
-                        at_rest ? rule.rest_sudden_threshold : rule.sudden_threshold,
-                        at_rest ? rule.rest_threshold : rule.noise_threshold,
+                        rests ? rule.rest_sudden_threshold : rule.sudden_threshold,
+                        rests ? rule.rest_threshold : rule.noise_threshold,
                         now,
                         chosen,
                         samples,
@@ -107,6 +117,7 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
                     Channels<float>* debug) {
   const RadianceBlend pass{noisy, sources, rule, at_rest, before, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { pass.read_row(y); });
+  pass.look_for_changes(guides);
   pass.find_activity(guides);
   ChannelView<const float> spread;
   for (int k = 0; k < pass.candidates(); ++k)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/history/component_history.h"
+#include "core/history/light_change.h"
 #include "core/spatial/window.h"
 
 namespace holdfast {
@@ -19,6 +20,7 @@ struct RadianceBlendRule {
   float spatial_samples =
       40.0f;                   ///< samples that the spatial filter adds: noise averages, bias not
   float most_samples = 64.0f;  ///< cap of the samples credited to history
+  LightChangeRule change;      ///< where that is found, a scene at rest counts as if it moved
 };
 
 /// Scratch of `blend_radiance`: for each candidate, R, G, B and samples; differences to the frame
@@ -27,12 +29,14 @@ struct RadianceBlendScratch {
   static constexpr int kPerCandidate = 4, kMostCandidates = 2;
   Channels<float> candidates, differences[kMostCandidates], means;
   ActivityMap activity;  ///< of the differences
+  LightChange change;
 
   RadianceBlendScratch() = default;
   RadianceBlendScratch(int width, int height, int most_candidates)
       : candidates(width, height, kPerCandidate * most_candidates),
         means(width, height, kPerCandidate * most_candidates),
-        activity(width, height) {
+        activity(width, height),
+        change(width, height) {
     for (int k = 0; k < most_candidates; ++k)
       differences[k] = Channels<float>(width, height, kPerCandidate);
   }

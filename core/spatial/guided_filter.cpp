@@ -286,6 +286,9 @@ HOLDFAST_INLINE void mean1_body(const FilterRow& a) {
 HOLDFAST_INLINE void mean2_body(const FilterRow& a) {
   filter_row_body<2, false, Spread::kVariance, false>(a);
 }
+HOLDFAST_INLINE void footprint_mean2_body(const FilterRow& a) {
+  filter_row_body<2, false, Spread::kVariance, true>(a);
+}
 HOLDFAST_INLINE void mean3_body(const FilterRow& a) {
   filter_row_body<3, false, Spread::kVariance, false>(a);
 }
@@ -325,6 +328,7 @@ HOLDFAST_INLINE void footprint_weighted1_body(const FilterRow& a) {
 
 HOLDFAST_KERNEL(mean1, FilterRow)
 HOLDFAST_KERNEL(mean2, FilterRow)
+HOLDFAST_KERNEL(footprint_mean2, FilterRow)
 HOLDFAST_KERNEL(mean3, FilterRow)
 HOLDFAST_KERNEL(mean4, FilterRow)
 HOLDFAST_KERNEL(footprint_mean4, FilterRow)
@@ -352,7 +356,7 @@ void filter_row(const FilterRow& row) noexcept {
     return row.footprint[0] ? footprint_mean1(row) : weighted_mean1(row);
   switch (row.channels) {
     case 1: return mean1(row);
-    case 2: return mean2(row);
+    case 2: return row.footprint[0] ? footprint_mean2(row) : mean2(row);
     case 3: return mean3(row);
     case 4: return row.footprint[0] ? footprint_mean4(row) : mean4(row);
     default: assert(row.channels == 7); return mean7(row);

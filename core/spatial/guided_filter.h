@@ -58,8 +58,8 @@ struct FilterRow {
 };
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
-/// uses: without luminance, 1 channel with kSamples or 4 with kVariance (with or without
-/// footprint), or 1, 2, 3 or 7 channels with kVariance; with luminance, 1 or 3 channels with either
+/// uses: without luminance, 1 channel with kSamples or 2 or 4 with kVariance (with or without
+/// footprint), or 1, 3 or 7 channels with kVariance; with luminance, 1 or 3 channels with either
 /// spread, or with kSamples and footprint. Asserts that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
 

@@ -19,7 +19,7 @@ struct WindowScratch {
 /// exactly; step 2 overlaps to 7x7 with larger weights inside. Returns the channel of 1/n, n the
 /// number of equal samples in the window's mean (exact for step 3). Tiles that `activity` lists at
 /// rest copy their input; their 1/n is 1.
-/// With a `footprint` (E, F, G of FilterRow; four channels only) taps outside it count less.
+/// With a `footprint` (E, F, G of FilterRow; two or four channels only) taps outside it count less.
 ///   reads guides, `in` | writes `out` | halo 1 + second_step px
 ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
                                       int second_step, WindowScratch& scratch, Channels<float>& out,

@@ -19,8 +19,8 @@ struct Blend : test::StillHistory {
   Blend() : StillHistory(kWidth, kHeight, 1) { test::fill(variance[0], 0.25f); }
   void run(const HistorySources& sources, const ExpectedErrorRule& rule = {},
            Channels<float>* debug = nullptr) {
-    blend_by_expected_error(guides, noisy, sources, std::as_const(variance)[0], rule, before,
-                            scratch, window, now, debug);
+    blend_by_expected_error(guides, noisy, sources, std::as_const(variance)[0], nullptr, rule,
+                            before, scratch, window, now, debug);
   }
 };
 
@@ -172,9 +172,10 @@ TEST(ExpectedError, AgreesWithTheDocumentedFormulaForTwoCandidates) {
         samples[which].push_back(taps.any() ? double(b.before.samples().at(qx, qy)) : 0);
         difference[which].push_back(value[which].back() - current);
       }
-  const auto inverse_m = plain_window(std::vector<double>(kWidth * kHeight, 1.0), 2, true);
-  const std::vector<double> mean[2] = {plain_window(difference[0], 2, false),
-                                       plain_window(difference[1], 2, false)};
+  const auto inverse_m =
+      plain_window(std::vector<double>(kWidth * kHeight, 1.0), rule.window_step, true);
+  const std::vector<double> mean[2] = {plain_window(difference[0], rule.window_step, false),
+                                       plain_window(difference[1], rule.window_step, false)};
   int by_shadow = 0, by_none = 0;
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {

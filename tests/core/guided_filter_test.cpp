@@ -28,9 +28,10 @@ constexpr Combination kCombinations[] = {
     {1, Spread::kVariance, false, false}, {2, Spread::kVariance, false, false},
     {3, Spread::kVariance, false, false}, {4, Spread::kVariance, false, false},
     {7, Spread::kVariance, false, false}, {4, Spread::kVariance, false, true},
-    {1, Spread::kSamples, true, false},   {3, Spread::kSamples, true, false},
-    {1, Spread::kVariance, true, false},  {3, Spread::kVariance, true, false},
-    {1, Spread::kSamples, true, true},    {3, Spread::kSamples, true, true}};
+    {2, Spread::kVariance, false, true},  {1, Spread::kSamples, true, false},
+    {3, Spread::kSamples, true, false},   {1, Spread::kVariance, true, false},
+    {3, Spread::kVariance, true, false},  {1, Spread::kSamples, true, true},
+    {3, Spread::kSamples, true, true}};
 
 std::ostream& operator<<(std::ostream& os, const Combination& c) {
   return os << c.channels << " channels, "

@@ -97,7 +97,7 @@ class RawStream {
   static std::vector<v1::DenoiseRequest> messages(const Frame& frame,
                                                   const DenoiserConfig& config) {
     std::vector<v1::DenoiseRequest> out;
-    client::FrameSender sender({&frame, [](const Frame*) {}}, config.planes);
+    client::FrameSender sender({{&frame, [](const Frame*) {}}, 0, {}, {}}, config.planes);
     v1::DenoiseRequest message;
     while (sender.next(message)) out.push_back(message);
     return out;

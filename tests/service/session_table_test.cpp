@@ -51,13 +51,42 @@ TEST(SessionTable, TokensAndIdsOfTwoSessionsDiffer) {
   EXPECT_NE(a->token(), b->token());
 }
 
-TEST(SessionTable, HoldsOneStreamForEachSession) {
+TEST(SessionLife, GivesTheSessionToTheNewestStream) {
+  const SessionLife::TimePoint start{};
+  SessionLife life(start);
+  const auto older = life.attach(), newer = life.attach();
+  EXPECT_NE(older, newer);
+  EXPECT_FALSE(life.detach(older, start + 1s)) << "its hold is void";
+  EXPECT_TRUE(life.streaming());
+  EXPECT_TRUE(life.detach(newer, start + 2s));
+  EXPECT_FALSE(life.detach(newer, start + 3s)) << "a hold ends once";
+  EXPECT_FALSE(life.expired(start + 11s, 10s));
+  EXPECT_TRUE(life.expired(start + 12s, 10s));
+}
+
+TEST(SessionLife, ExpiresOnlyWithoutAStream) {
+  const SessionLife::TimePoint start{};
+  SessionLife life(start);
+  EXPECT_TRUE(life.expired(start + 10s, 10s)) << "never had a stream";
+  const auto hold = life.attach();
+  EXPECT_FALSE(life.expired(start + 1000s, 10s));
+  life.detach(hold, start + 1000s);
+  life.attach();
+  EXPECT_FALSE(life.expired(start + 2000s, 10s)) << "came back";
+}
+
+TEST(SessionTable, SaysWhenASessionIsTakenOverFromAnotherStream) {
   SessionTable table({});
   const auto session = table.create(config_of(8, 8));
-  table.attach(session->id(), session->token());
-  EXPECT_EQ(refusal_of([&] { table.attach(session->id(), session->token()); }), Refusal::kBusy);
-  table.detach(*session);
-  EXPECT_EQ(table.attach(session->id(), session->token()), session);
+  const auto first = table.attach(session->id(), session->token());
+  EXPECT_FALSE(first.taken_over);
+  const auto second = table.attach(session->id(), session->token());
+  EXPECT_TRUE(second.taken_over);
+  table.detach(*session, first.hold);
+  EXPECT_TRUE(table.attached(*session));
+  table.detach(*session, second.hold);
+  EXPECT_FALSE(table.attached(*session));
+  EXPECT_FALSE(table.attach(session->id(), session->token()).taken_over);
 }
 
 TEST(SessionTable, KeepsASessionWithoutAStreamForTheLingerTimeOnly) {
@@ -66,10 +95,10 @@ TEST(SessionTable, KeepsASessionWithoutAStreamForTheLingerTimeOnly) {
   limits.linger = 30s;
   SessionTable table(limits, [&] { return now; });
   const auto session = table.create(config_of(8, 8));
-  table.attach(session->id(), session->token());
+  const auto hold = table.attach(session->id(), session->token()).hold;
   now += 100s;
   EXPECT_EQ(table.expire(), 0) << "it has a stream";
-  table.detach(*session);
+  table.detach(*session, hold);
   now += 29s;
   EXPECT_EQ(table.expire(), 0);
   now += 1s;

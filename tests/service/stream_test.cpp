@@ -74,14 +74,65 @@ TEST_F(DenoiseCall, RefusesAWrongToken) {
   expect_alive(0);
 }
 
-TEST_F(DenoiseCall, RefusesASecondStreamOfASession) {
+TEST_F(DenoiseCall, GivesASessionToItsNewestStreamAndTellsTheOlderOne) {
   RawStream first(client);
   first.attach();
-  RawStream second(client);
-  second.hello(client.session.session_id(), client.session.token());
-  EXPECT_EQ(second.finish().error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   first.write(test::small_frame(config, 0), config);
   EXPECT_FALSE(first.read_result().has_error());
+  RawStream second(client);
+  EXPECT_EQ(second.attach().last_frame_index(), 0);
+  while (first.read().message_case() != v1::DenoiseResponse::MESSAGE_NOT_SET) {
+  }
+  const grpc::Status status = first.finish();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::ABORTED);
+  EXPECT_EQ(status.error_message(), "a newer stream has the session");
+  EXPECT_TRUE(client.get().streaming()) << "the end of the older stream detaches nothing";
+  second.write(test::small_frame(config, 1), config);
+  const v1::FrameResult result = second.read_result();
+  EXPECT_FALSE(result.has_error());
+  EXPECT_FALSE(result.history_reset());
+}
+
+TEST_F(DenoiseCall, AnswersARepeatedFrameWithTheSameBitsAndFiltersItOnce) {
+  const auto answer = [&](RawStream& stream, int index) {
+    stream.write(test::small_frame(config, index), config);
+    v1::FrameResult result = stream.read_result();
+    EXPECT_FALSE(result.has_error()) << result.error().message();
+    std::string data;
+    for (int plane = 0; plane < result.planes_size(); ++plane)
+      data += stream.read().plane_chunk().data();
+    return std::pair(result, data);
+  };
+  RawStream stream(client);
+  stream.attach();
+  const auto first = answer(stream, 0), second = answer(stream, 1);
+  const auto again = answer(stream, 1), older = answer(stream, 0);
+  EXPECT_FALSE(second.first.repeated());
+  EXPECT_TRUE(again.first.repeated());
+  EXPECT_EQ(again.second, second.second);
+  EXPECT_EQ(older.second, first.second);
+  EXPECT_EQ(client.get().frames(), 2u);
+  answer(stream, 2);
+  stream.write(test::small_frame(config, 0), config);
+  EXPECT_EQ(stream.read_result().error().violation().subject(), "frame index")
+      << "as many are remembered as may be in flight: two";
+}
+
+TEST_F(DenoiseCall, StartsHistoryAnewAtAGreaterEpochAndRefusesASmallerOne) {
+  RawStream stream(client);
+  stream.attach();
+  const auto send = [&](int index, std::uint64_t epoch) {
+    auto messages = RawStream::messages(test::small_frame(config, index), config);
+    messages[0].mutable_frame_begin()->set_epoch(epoch);
+    for (const auto& message : messages) stream.write(message);
+    return stream.read_result();
+  };
+  EXPECT_TRUE(send(5, 0).history_reset());
+  EXPECT_FALSE(send(6, 0).history_reset());
+  EXPECT_TRUE(send(5, 1).history_reset()) << "and its index is no repetition";
+  EXPECT_FALSE(send(6, 1).history_reset());
+  EXPECT_EQ(send(7, 0).error().message(), "epoch of frame 7 must be at least 1, but it is 0");
+  EXPECT_FALSE(send(7, 1).history_reset()) << "the refused frame changed nothing";
 }
 
 TEST_F(DenoiseCall, EndsWithANamedErrorWhenAMessageIsOutOfPlace) {
@@ -174,6 +225,8 @@ TEST_F(DenoiseCall, KeepsHistoryForAClientThatComesBack) {
   EXPECT_TRUE(welcome.resumed());
   EXPECT_EQ(welcome.last_frame_index(), 5);
   stream.write(test::small_frame(config, 5), config);
+  EXPECT_TRUE(stream.read_result().repeated());
+  stream.write(test::small_frame(config, 4), config);
   EXPECT_EQ(stream.read_result().error().violation().subject(), "frame index");
   stream.write(test::small_frame(config, 6), config);
   EXPECT_FALSE(stream.read_result().has_error());

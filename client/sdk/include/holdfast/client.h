@@ -15,7 +15,7 @@
 /// and from which it receives clean ones.
 namespace holdfast::client {
 
-/// The server cannot be reached, or the connection was lost.
+/// The server cannot be reached, or the connection was lost for longer than the session waits.
 struct ConnectionError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -29,6 +29,11 @@ struct RefusedError : std::runtime_error {
 struct SessionOptions {
   std::string address = "127.0.0.1:50051";  ///< host:port or unix:PATH
   std::chrono::milliseconds connect_timeout{5000};
+  /// A lost connection is opened again for that long; 0 = never.
+  std::chrono::milliseconds reconnect_timeout{10000};
+  /// Answered frames that the session holds, to warm the history of a new server with them if the
+  /// old one is lost; 0 = none.
+  int rewarm_frames = 4;
 
   int width = 0;                 ///< pixels, 1..kMaxDimension
   int height = 0;                ///< pixels, 1..kMaxDimension
@@ -77,6 +82,8 @@ struct FrameOutput {
   std::string preset;              ///< that was used
   std::vector<Repair> repaired;    ///< values that were not finite or out of range, by plane
   std::uint64_t non_finite_out = 0;
+  bool history_lost = false;  ///< the server was lost: history was made anew from the last frames
+  bool repeated = false;      ///< the frame was sent again, and its answer was still known
 };
 
 /// Plane bytes that crossed the wire.
@@ -87,6 +94,10 @@ struct Traffic {
 
 /// A session and its stream. Frames are answered in the order in which they were submitted. One
 /// thread may submit while another receives.
+///
+/// A lost connection is opened again in the background: what was not answered is sent again, and no
+/// frame is filtered twice or left out. If the server has lost the session, a new one is made and
+/// warmed with the last answered frames; the next output says so (`history_lost`).
 class Session {
  public:
   /// Connects, makes the session, opens the stream. Throws ConnectionError, RefusedError, or
@@ -98,7 +109,8 @@ class Session {
   Session& operator=(Session&&) noexcept;
 
   /// Sends a frame; blocks while as many frames are in flight as the server gave credits. The
-  /// planes are read until the frame is answered: they must not change before. Throws InputError if
+  /// planes are read until the session lets go of the pointer, which is rewarm_frames answers after
+  /// the frame's own: they must not change before. Throws InputError if
   /// the planes are not those of the session; the session is then as before. Throws ConnectionError
   /// or RefusedError if the stream has ended.
   void submit(std::shared_ptr<const Frame> frame);
@@ -113,6 +125,9 @@ class Session {
   /// The same, but returns nothing at once if there is no answer yet.
   std::optional<FrameOutput> try_receive();
 
+  /// The frames that follow belong together: history starts anew and indices may start again.
+  void restart();
+
   /// No more frames will be submitted.
   void finish();
   /// Ends the session in order: finishes, waits for what is in flight, deletes it on the server.
@@ -125,6 +140,8 @@ class Session {
   int credits() const;
   /// Frames submitted and not yet answered.
   int in_flight() const;
+  /// How often a lost connection was opened again.
+  int reconnects() const;
   /// Result planes of each frame, in order.
   const std::vector<PlaneId>& results() const;
   const std::string& recipe() const;

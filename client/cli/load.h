@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace holdfast::cli {
+
+/// A load on a server.
+struct LoadOptions {
+  std::string server;             ///< host:port or unix:PATH; empty = a server in this process
+  int threads = 0;                ///< of the server in this process; 0 = one for each core
+  std::string frames = "fence";   ///< a built-in scene, a scene file, or the folder of a sequence
+  int width = 480, height = 270;  ///< pixels; a sequence has its own
+  int sessions = 1;
+  /// Frames that each session sends a second, whether or not the server keeps up (open loop); 0 =
+  /// the next when a credit is free (closed loop).
+  double fps = 0;
+  double seconds = 10;  ///< for which frames are sent; the answers of all are waited for
+  std::string recipe = "reliable";
+  std::string preset = "balanced";
+};
+
+/// Where the time of the answered frames went, milliseconds, one value a frame.
+struct LoadTimes {
+  std::vector<double> latency;    ///< from when the frame was to be sent to its last result byte
+  std::vector<double> client;     ///< of that: waiting for its turn and for a credit
+  std::vector<double> queue;      ///< waiting in the server
+  std::vector<double> filter;     ///< in the core
+  std::vector<double> transport;  ///< the rest: both ways, with copies and flow control
+
+  void add(const LoadTimes& other);
+};
+
+struct LoadResult {
+  LoadOptions options;  ///< with the size that was used
+  std::int64_t submitted = 0, answered = 0;
+  std::int64_t reconnects = 0;
+  double elapsed_s = 0;                       ///< from the first submit to the last answer
+  std::uint64_t bytes_in = 0, bytes_out = 0;  ///< plane bytes to the server and back
+  LoadTimes times;
+  std::map<std::string, std::int64_t> errors;  ///< by kind: invalid_frame, server_failed, refused,
+                                               ///< connection
+
+  double frames_per_second() const;
+  void add(const LoadResult& other);
+};
+
+/// Runs the load. Throws InputError for bad options, ServerUnreachable if not one session can be
+/// made; what fails later is counted.
+LoadResult run_load(const LoadOptions& options);
+
+/// The largest rate for each session at which 95 % of the latencies stay within
+/// `goal_ms` and no frame fails, by doubling and bisection with `run_load`.
+struct LoadSearch {
+  double fps = 0;  ///< for each session; 0 if even the slowest rate tried misses the goal
+  std::vector<LoadResult> runs;
+};
+LoadSearch search_load(LoadOptions options, double goal_ms);
+
+nlohmann::ordered_json load_json(const LoadResult& result);
+std::string load_text(const LoadResult& result);
+
+}  // namespace holdfast::cli

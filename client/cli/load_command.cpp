@@ -1,0 +1,89 @@
+#include <cstdio>
+#include <memory>
+
+#include "client/cli/command.h"
+#include "client/cli/image_size.h"
+#include "client/cli/json_file.h"
+#include "client/cli/load.h"
+
+namespace holdfast::cli {
+namespace {
+
+struct Arguments {
+  LoadOptions options;
+  std::string size = "480x270", json;
+  double search_ms = 0;
+  bool quiet = false;
+};
+
+/// The run that stands for the search: the fastest that held.
+const LoadResult& best(const LoadSearch& search) {
+  for (auto it = search.runs.rbegin(); it != search.runs.rend(); ++it)
+    if (it->options.fps == search.fps) return *it;
+  return search.runs.back();
+}
+
+void run(const Arguments& args) {
+  nlohmann::ordered_json json;
+  if (args.search_ms > 0) {
+    const LoadSearch search = search_load(args.options, args.search_ms);
+    json = load_json(best(search));
+    json["search"] = {{"p95_goal_ms", args.search_ms}, {"fps", search.fps}};
+    if (!args.quiet)
+      std::printf("%.1f frames/s each is the largest rate whose p95 stays within %g ms\n%s",
+                  search.fps, args.search_ms, load_text(best(search)).c_str());
+  } else {
+    const LoadResult result = run_load(args.options);
+    json = load_json(result);
+    if (!args.quiet) std::printf("%s", load_text(result).c_str());
+  }
+  if (!args.json.empty()) write_json_file(args.json, json);
+}
+
+}  // namespace
+
+void add_load(CLI::App& app) {
+  const auto args = std::make_shared<Arguments>();
+  LoadOptions& options = args->options;
+  CLI::App& command = *app.add_subcommand("load", "measures a server under load");
+  CLI::Option* const server = command.add_option(
+      "--server", options.server, "host:port or unix:PATH; without it, a server in this process");
+  command.add_option("--sessions", options.sessions, "clients at once")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  CLI::Option* const fps =
+      command
+          .add_option("--fps", options.fps,
+                      "frames that each session sends a second, whether or not the server keeps "
+                      "up; latency then counts from the planned time; default: as answers come")
+          ->check(CLI::PositiveNumber);
+  command.add_option("--seconds", options.seconds, "for which frames are sent")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command.add_option("--size", args->size, "of rendered frames, WIDTHxHEIGHT")
+      ->capture_default_str();
+  command
+      .add_option("--frames", options.frames,
+                  "built-in scene, scene file, or folder of a sequence; the first frames are sent "
+                  "again and again")
+      ->capture_default_str();
+  command.add_option("--recipe", options.recipe)->capture_default_str();
+  command.add_option("--preset", options.preset)->capture_default_str();
+  command
+      .add_option("--search", args->search_ms,
+                  "looks for the largest --fps whose 95th percentile of latency stays within that "
+                  "many milliseconds")
+      ->check(CLI::PositiveNumber)
+      ->excludes(fps);
+  command.add_option("--threads", options.threads, "of the server in this process")
+      ->check(CLI::Range(1, 1024))
+      ->excludes(server);
+  command.add_flag("--quiet", args->quiet, "no summary");
+  command.add_option("--json", args->json, "file for the machine-readable result");
+  command.callback([args] {
+    parse_image_size("--size", args->size, args->options.width, args->options.height);
+    run(*args);
+  });
+}
+
+}  // namespace holdfast::cli

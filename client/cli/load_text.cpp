@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "client/cli/load.h"
+#include "client/cli/percentiles.h"
+
+namespace holdfast::cli {
+namespace {
+
+struct Part {
+  const char* name;
+  const std::vector<double> LoadTimes::*values;
+};
+constexpr Part kParts[] = {{"latency", &LoadTimes::latency},
+                           {"client", &LoadTimes::client},
+                           {"queue", &LoadTimes::queue},
+                           {"filter", &LoadTimes::filter},
+                           {"transport", &LoadTimes::transport}};
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+template <class... T>
+std::string printed(const char* format, T... values) {
+  char text[256];
+  std::snprintf(text, sizeof(text), format, values...);
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json load_json(const LoadResult& result) {
+  const LoadOptions& options = result.options;
+  nlohmann::ordered_json ms, errors = nlohmann::ordered_json::object();
+  for (const Part& part : kParts) {
+    ms[part.name] = percentiles(result.times.*part.values);
+    ms[part.name]["max"] = largest(result.times.*part.values);
+  }
+  for (const auto& [kind, count] : result.errors) errors[kind] = count;
+  return {{"sessions", options.sessions},
+          {"fps", options.fps},
+          {"seconds", options.seconds},
+          {"width", options.width},
+          {"height", options.height},
+          {"recipe", options.recipe},
+          {"preset", options.preset},
+          {"submitted", result.submitted},
+          {"answered", result.answered},
+          {"frames_per_second", result.frames_per_second()},
+          {"elapsed_s", result.elapsed_s},
+          {"bytes_in", result.bytes_in},
+          {"bytes_out", result.bytes_out},
+          {"reconnects", result.reconnects},
+          {"errors", errors},
+          {"ms", ms}};
+}
+
+std::string load_text(const LoadResult& result) {
+  const LoadOptions& options = result.options;
+  const std::string rate =
+      options.fps > 0 ? printed("%g frames/s each", options.fps) : std::string("closed loop");
+  std::string text =
+      printed("%d sessions of %dx%d, %s, %s (%s)\n", options.sessions, options.width,
+              options.height, rate.c_str(), options.recipe.c_str(), options.preset.c_str());
+  text += printed("answered %lld of %lld frames, %.1f frames/s, %.1f MB/s in, %.1f MB/s out\n",
+                  static_cast<long long>(result.answered), static_cast<long long>(result.submitted),
+                  result.frames_per_second(),
+                  1e-6 * static_cast<double>(result.bytes_in) / std::max(result.elapsed_s, 1e-9),
+                  1e-6 * static_cast<double>(result.bytes_out) / std::max(result.elapsed_s, 1e-9));
+  text += printed("%-10s %9s %9s %9s %9s\n", "ms", "p50", "p95", "p99", "max");
+  for (const Part& part : kParts) {
+    const std::vector<double>& values = result.times.*part.values;
+    text += printed("%-10s %9.2f %9.2f %9.2f %9.2f\n", part.name, percentile(values, 0.50),
+                    percentile(values, 0.95), percentile(values, 0.99), largest(values));
+  }
+  for (const auto& [kind, count] : result.errors)
+    text += printed("errors: %s %lld\n", kind.c_str(), static_cast<long long>(count));
+  if (result.reconnects > 0)
+    text += printed("reconnects: %lld\n", static_cast<long long>(result.reconnects));
+  return text;
+}
+
+}  // namespace holdfast::cli

@@ -1,0 +1,172 @@
+#include "core/history/light_change.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/core/history_world.h"
+
+namespace holdfast {
+namespace {
+
+constexpr int kWidth = 75, kHeight = 53, kTile = LightChange::kTile;  // tiles cut at both edges
+constexpr int kColumns = (kWidth + kTile - 1) / kTile, kRows = (kHeight + kTile - 1) / kTile;
+
+/// A history and its differences to a frame, as a blend of radiance gathers them.
+struct Gathered {
+  Guides guides = test::wall(test::orthographic_camera(kWidth, kHeight), kWidth, kHeight);
+  Channels<float> values{kWidth, kHeight, 4}, differences{kWidth, kHeight, 4};
+  LightChange change{kWidth, kHeight};
+  LightChangeRule rule{.noticed = true};
+
+  Gathered() { test::fill(values[3], 8.0f); }
+
+  template <class Body>
+  static void each(const Body& body) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) body(x, y);
+  }
+  /// Values of 1, differences uniform in -1..1.
+  void noise(test::Random& random) {
+    each([&](int x, int y) {
+      for (int c = 0; c < 3; ++c) {
+        values[c].at(x, y) = 1.0f;
+        differences[c].at(x, y) = random.real(-1, 1);
+      }
+    });
+  }
+  void shift_tile(int column, int row, float by) {
+    each([&](int x, int y) {
+      if (x / kTile != column || y / kTile != row) return;
+      for (int c = 0; c < 3; ++c) differences[c].at(x, y) += by;
+    });
+  }
+  void measure() { change.measure(guides, {values, differences, 0, 3, 3}, rule); }
+  bool tile_marked(int column, int row) const {
+    return change.changed(column * kTile, row * kTile);
+  }
+  int marked() const {
+    int count = 0;
+    for (int row = 0; row < kRows; ++row)
+      for (int column = 0; column < kColumns; ++column) count += tile_marked(column, row) ? 1 : 0;
+    return count;
+  }
+};
+
+/// The tile's own verdict by the formula, in two passes over a list of its pixels.
+bool differs(const Gathered& g, int column, int row, double deviations) {
+  std::vector<glm::dvec3> d, h;
+  for (int y = row * kTile; y < std::min(kHeight, (row + 1) * kTile); ++y)
+    for (int x = column * kTile; x < std::min(kWidth, (column + 1) * kTile); ++x) {
+      if (!(g.guides.depth().at(x, y) > 0.0f) || !(g.values[3].at(x, y) > 0.0f)) continue;
+      d.emplace_back(g.differences[0].at(x, y), g.differences[1].at(x, y),
+                     g.differences[2].at(x, y));
+      h.emplace_back(g.values[0].at(x, y), g.values[1].at(x, y), g.values[2].at(x, y));
+    }
+  if (d.size() < 2) return false;
+  const auto n = static_cast<double>(d.size());
+  glm::dvec3 mean(0), level(0);
+  for (const glm::dvec3& v : d) mean += v / n;
+  for (const glm::dvec3& v : h) level += v / n;
+  double variance = 0;
+  for (const glm::dvec3& v : d) variance += glm::dot(v - mean, v - mean) / n;
+  return glm::dot(mean, mean) > deviations * deviations * variance / n &&
+         glm::length(mean) > double{g.rule.least_share} * glm::length(level);
+}
+
+TEST(LightChange, NoiseAloneMarksNothing) {
+  Gathered g;
+  g.rule.frame_share = 0.02f;
+  for (std::uint32_t seed = 1; seed <= 200; ++seed) {
+    test::Random random(seed);
+    g.noise(random);
+    g.measure();
+    ASSERT_EQ(g.marked(), 0) << seed;
+    ASSERT_EQ(g.change.share(), 0.0);
+  }
+}
+
+TEST(LightChange, TilesAreMarkedAsTheFormulaSaysAndAllAroundThem) {
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    Gathered g;
+    test::Random random(seed);
+    g.noise(random);
+    Gathered::each([&](int x, int y) {
+      if (random.uniform() < 0.1) g.values[3].at(x, y) = 0.0f;
+      if (random.uniform() < 0.1) test::set_pixel(g.guides, x, y, 0.0f, glm::vec3(0));
+    });
+    for (int k = 0; k < 3; ++k)
+      g.shift_tile(static_cast<int>(random.real(0, kColumns)),
+                   static_cast<int>(random.real(0, kRows)), random.real(0.0f, 0.5f));
+    g.measure();
+    int own = 0;
+    for (int row = 0; row < kRows; ++row)
+      for (int column = 0; column < kColumns; ++column) {
+        const double limit = double{g.rule.tile_deviations};
+        own += differs(g, column, row, limit) ? 1 : 0;
+        bool expected = false;
+        for (int j = std::max(row - 1, 0); j <= std::min(row + 1, kRows - 1); ++j)
+          for (int i = std::max(column - 1, 0); i <= std::min(column + 1, kColumns - 1); ++i)
+            expected |= differs(g, i, j, limit);
+        ASSERT_EQ(g.tile_marked(column, row), expected) << seed << ": " << column << ' ' << row;
+      }
+    EXPECT_NEAR(g.change.share(), double(own) / (kColumns * kRows), 1e-12);
+  }
+}
+
+// 0.25 is less than half the deviation of a single difference: 49 pixels would show 3 deviations.
+TEST(LightChange, AShiftBelowTheNoiseOfAPixelIsFoundInItsTile) {
+  Gathered g;
+  test::Random random(5);
+  g.noise(random);
+  g.shift_tile(1, 1, 0.25f);
+  g.measure();
+  EXPECT_EQ(g.marked(), 9);
+  EXPECT_TRUE(g.tile_marked(0, 0) && g.tile_marked(2, 2));
+  EXPECT_FALSE(g.tile_marked(3, 1));
+  g.change.clear();
+  EXPECT_EQ(g.marked(), 0);
+}
+
+TEST(LightChange, ManyTilesThatEachDifferTooLittleMarkTheFrameWhereTheRuleSaysSo) {
+  for (const bool whole : {false, true}) {
+    Gathered g;
+    test::Random random(6);
+    g.noise(random);
+    for (int row = 0; row < kRows; ++row)
+      for (int column = 0; column < kColumns; ++column)
+        if ((row + column) % 2 == 0) g.shift_tile(column, row, 0.15f);
+    g.rule.tile_deviations = 1e6f;  // never
+    if (whole) g.rule.frame_share = 0.02f;
+    g.measure();
+    EXPECT_EQ(g.marked(), whole ? kColumns * kRows : 0);
+    EXPECT_EQ(g.change.share(), whole ? 1.0 : 0.0);
+  }
+}
+
+TEST(LightChange, RoundingOfAConstantImageIsNoChange) {
+  Gathered g;
+  Gathered::each([&](int x, int y) {
+    for (int c = 0; c < 3; ++c) {
+      g.values[c].at(x, y) = 1e3f;
+      g.differences[c].at(x, y) = 6e-5f;
+    }
+  });
+  g.measure();
+  EXPECT_EQ(g.marked(), 0);
+}
+
+TEST(LightChange, WithoutHistoryNothingIsKnownToChange) {
+  Gathered g;
+  test::Random random(7);
+  g.noise(random);
+  g.shift_tile(1, 1, 5.0f);
+  test::fill(g.values[3], 0.0f);
+  g.measure();
+  EXPECT_EQ(g.marked(), 0);
+  EXPECT_EQ(g.change.share(), 0.0);
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,207 @@
+// What goes wrong between a client and a server, one test for each, named by the failure.
+#include <thread>
+
+#include "tests/service/raw_client.h"
+#include "tests/service/served.h"
+#include "tests/service/server_process.h"
+
+namespace holdfast {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using client::Session;
+using client::SessionOptions;
+using test::RawClient;
+using test::RawStream;
+using test::ServerProcess;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class Fault : public ::testing::Test {
+ protected:
+  SessionOptions options() const {
+    SessionOptions out;
+    out.address = socket.address();
+    out.width = config.width;
+    out.height = config.height;
+    out.lights = config.lights;
+    out.planes = config.planes;
+    return out;
+  }
+  /// A session on a server that may just have been started.
+  Session connect() const {
+    for (const auto start = Clock::now();;) try {
+        return Session(options());
+      } catch (const client::ConnectionError&) {
+        if (seconds_since(start) > 20) throw;
+        std::this_thread::sleep_for(20ms);
+      }
+  }
+  void pass(Session& session, int index) const {
+    session.submit(test::small_frame(config, index));
+    const auto output = session.receive();
+    ASSERT_TRUE(output);
+    EXPECT_FALSE(output->error) << output->error->message;
+    EXPECT_EQ(output->index, index);
+  }
+
+  test::SocketAddress socket;
+  DenoiserConfig config = test::small_config();
+};
+
+TEST_F(Fault, ServerKilledAndStartedAgainIsContinuedWarmWithinASecond) {
+  auto server = std::make_unique<ServerProcess>(socket.address());
+  Session session = connect();
+  for (int i = 0; i < 5; ++i) pass(session, i);
+  session.submit(test::small_frame(config, 5));
+  server->signal(SIGKILL);
+  server->wait();
+  server = std::make_unique<ServerProcess>(socket.address());
+  connect().close();  // it listens
+  const auto start = Clock::now();
+  auto output = session.receive();
+  ASSERT_TRUE(output && !output->error);
+  EXPECT_EQ(output->index, 5);
+  if (!output->history_lost) {  // frame 5 was answered before the end
+    session.submit(test::small_frame(config, 6));
+    output = session.receive();
+  }
+  EXPECT_LT(seconds_since(start), 1.0);
+  EXPECT_TRUE(output->history_lost);
+  EXPECT_FALSE(output->history_reset) << "it was warmed";
+  session.close();
+}
+
+TEST_F(Fault, ClientKilledInTheMiddleOfAFrameLeavesItsSessionAndOthersAlone) {
+  const ServerProcess server(socket.address());
+  Session other = connect();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  {
+    RawStream stream(client);
+    stream.attach();
+    stream.write(test::small_frame(config, 0), config);
+    EXPECT_FALSE(stream.read_result().has_error());
+    const auto messages = RawStream::messages(test::small_frame(config, 1), config);
+    stream.write(messages[0]);
+    stream.write(messages[1]);
+    stream.cancel();
+    stream.finish();
+  }
+  pass(other, 0);
+  RawStream again(client);
+  EXPECT_EQ(again.attach().last_frame_index(), 0) << "the half frame is not in the history";
+  again.write(test::small_frame(config, 1), config);
+  EXPECT_FALSE(again.read_result().history_reset());
+}
+
+TEST_F(Fault, SilentClientLosesItsSessionToItsOwnNewStream) {
+  const ServerProcess server(socket.address());
+  connect().close();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  RawStream silent(client);  // as a half-open connection looks to the server
+  silent.attach();
+  silent.write(test::small_frame(config, 0), config);
+  ASSERT_FALSE(silent.read_result().has_error());
+  RawStream again(client);
+  const auto start = Clock::now();
+  EXPECT_TRUE(again.attach().resumed());
+  EXPECT_LT(seconds_since(start), 1.0);
+  again.write(test::small_frame(config, 1), config);
+  EXPECT_FALSE(again.read_result().history_reset());
+}
+
+TEST_F(Fault, FrozenServerIsWaitedForAndNothingIsLost) {
+  const ServerProcess server(socket.address());
+  Session session = connect();
+  pass(session, 0);
+  server.signal(SIGSTOP);
+  session.submit(test::small_frame(config, 1));
+  std::this_thread::sleep_for(200ms);
+  EXPECT_FALSE(session.try_receive());
+  server.signal(SIGCONT);
+  EXPECT_EQ(session.receive()->index, 1);
+}
+
+TEST_F(Fault, SlowReaderStallsNobodyElse) {
+  const ServerProcess server(socket.address());
+  config = test::small_config(512, 400);
+  Session quick = connect();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  RawStream slow(client);
+  slow.attach();
+  std::thread writer([&] {  // more than the windows hold; nothing is read
+    for (int i = 0; i < 8 && slow.write(test::small_frame(config, i), config); ++i) {
+    }
+  });
+  std::this_thread::sleep_for(300ms);
+  for (int i = 0; i < 4; ++i) pass(quick, i);
+  slow.cancel();
+  writer.join();
+}
+
+TEST_F(Fault, OversizedMessageEndsTheStreamAndTheSessionStays) {
+  const ServerProcess server(socket.address());
+  connect().close();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  {
+    RawStream stream(client);
+    stream.attach();
+    auto message = RawStream::messages(test::small_frame(config, 0), config)[1];
+    message.mutable_plane_chunk()->mutable_data()->resize(9u << 20);
+    stream.write(message);
+    while (stream.read().message_case() != v1::DenoiseResponse::MESSAGE_NOT_SET) {
+    }
+    EXPECT_FALSE(stream.finish().ok());
+  }
+  RawStream again(client);
+  again.attach();
+  again.write(test::small_frame(config, 0), config);
+  EXPECT_FALSE(again.read_result().has_error());
+}
+
+TEST_F(Fault, StopSignalUnderLoadLosesNoFrameAndEndsWell) {
+  auto server = std::make_unique<ServerProcess>(socket.address());
+  Session session = connect();
+  std::vector<std::int64_t> answered;
+  constexpr int kFrames = 60;
+  std::thread load([&] {
+    for (int i = 0; i < kFrames; ++i) session.submit(test::small_frame(config, i));
+    session.finish();
+  });
+  for (int i = 0; i < 10; ++i) answered.push_back(session.receive()->index);
+  server->signal(SIGTERM);
+  EXPECT_EQ(server->wait(), 0) << "long before its deadline of ten seconds";
+  server = std::make_unique<ServerProcess>(socket.address());
+  while (const auto output = session.receive()) {
+    EXPECT_FALSE(output->error);
+    answered.push_back(output->index);
+  }
+  load.join();
+  ASSERT_EQ(answered.size(), static_cast<std::size_t>(kFrames));
+  for (int i = 0; i < kFrames; ++i) EXPECT_EQ(answered[static_cast<std::size_t>(i)], i);
+}
+
+TEST_F(Fault, PortInUseIsNamedAndEndsTheProgram) {
+  const ServerProcess first(socket.address());
+  connect().close();
+  ServerProcess second(socket.address());
+  EXPECT_EQ(second.wait(), 2);
+  EXPECT_NO_THROW(connect().close());
+}
+
+TEST_F(Fault, SessionLimitRefusesTheNextOneOnly) {
+  const ServerProcess server(socket.address(), {"--max-sessions", "1"});
+  Session first = connect();
+  EXPECT_THROW(Session second(options()), client::RefusedError);
+  pass(first, 0);
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace holdfast::test {
+
+/// holdfast-server as a process of its own, which a test may kill. HOLDFAST_SERVER is its program.
+class ServerProcess {
+ public:
+  explicit ServerProcess(const std::string& listen, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {HOLDFAST_SERVER, "--listen", listen, "--log-level", "off"});
+    std::vector<char*> arguments;
+    for (std::string& argument : more) arguments.push_back(argument.data());
+    arguments.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ == 0) {
+      execv(arguments[0], arguments.data());
+      _exit(127);
+    }
+  }
+  ~ServerProcess() {
+    if (pid_ > 0) signal(SIGKILL), wait();
+  }
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+  /// Its exit code, or minus the signal that ended it.
+  int wait() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+/// A unix socket address in a directory of its own.
+class SocketAddress {
+ public:
+  SocketAddress() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "holdfast-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~SocketAddress() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string address() const { return "unix:" + (path_ / "socket").string(); }
+  const std::filesystem::path& directory() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace holdfast::test
