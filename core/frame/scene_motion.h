@@ -42,6 +42,8 @@ class SceneMotion {
     return objects_[static_cast<std::size_t>(slot)];
   }
   int slot_of(std::uint32_t object_id) const;
+  /// The object of a slot, which is not slot 0.
+  std::uint32_t id_of(int slot) const { return slot_ids_[static_cast<std::size_t>(slot - 1)]; }
   int slot_count() const { return static_cast<int>(objects_.size()); }
   /// True when camera and all objects stand still.
   bool geometry_at_rest() const { return geometry_at_rest_; }

@@ -43,6 +43,10 @@ class GlossyTracer {
 
   /// The pixels of a block from (x, y) on.
   void trace(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
+    if (!any_sample(x, y, count)) {
+      std::fill_n(lanes.wanted.found, count, 0.0f);
+      return write(x, y, count, lanes, out);
+    }
     find_slots(x, y, count, lanes);
     std::fill_n(lanes.wanted.found, count, 0.0f);
     for (int i = 0; i < count; ++i)
@@ -60,6 +64,15 @@ class GlossyTracer {
   }
 
  private:
+  bool any_sample(int x, int y, int count) const {
+    bool any = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* direction = planes_.direction->channel(axis).row(y) + x;
+      for (int i = 0; i < count; ++i) any |= direction[i] != 0.0f;
+    }
+    return any;
+  }
+
   void find_slots(int x, int y, int count, Lanes& lanes) const {
     const float* depth = now_.depth().row(y) + x;
     const std::uint32_t* id = now_.id[0].row(y) + x;

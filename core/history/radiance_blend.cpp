@@ -10,6 +10,7 @@ namespace holdfast {
 namespace {
 
 constexpr int kStep = RadianceBlendScratch::kPerCandidate;
+constexpr int kSquare = 3;           // of a difference
 constexpr int kSamples = kStep - 1;  // channel of a candidate
 
 /// The candidates of each pixel, and what they are blended with.
@@ -41,18 +42,28 @@ struct RadianceBlend {
     return own;
   }
 
-  void read_row(int k, int y) const {
+  void read_row(int y) const {
     Taps own[kTapBlock];
     for (int x = 0; x < noisy.width(); x += kTapBlock) {
       const int count = std::min(kTapBlock, noisy.width() - x);
-      read_candidate({taps_of(k, x, y, count, own), k, x, y, count, noisy, before, s});
+      for (int k = 0; k < candidates(); ++k)
+        read_candidate({taps_of(k, x, y, count, own), k, x, y, count, noisy, before, s});
     }
+  }
+
+  /// Marks the tiles in which a candidate differs from the frame: most of an image has no
+  /// reflection, then and now. Elsewhere the means are those of zeros.
+  void find_activity(const Guides& guides) const {
+    ChannelView<const float> squares[RadianceBlendScratch::kMostCandidates];
+    for (int k = 0; k < candidates(); ++k) squares[k] = std::as_const(s.differences[k])[kSquare];
+    s.activity.measure(guides, {squares, static_cast<std::size_t>(candidates())},
+                       1 + rule.window_step, 0.0f, true);
   }
 
   /// Of the first candidate, which in a scene at rest leads nowhere else.
   void look_for_changes(const Guides& guides) const {
     if (at_rest && rule.change.noticed)
-      s.change.measure(guides, {s.candidates, s.differences, 0, 3, kSamples}, rule.change);
+      s.change.measure(guides, {s.candidates, s.differences[0], 0, 3, kSamples}, rule.change);
     else
       s.change.clear();
   }
@@ -105,13 +116,13 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
                     RadianceBlendScratch& s, WindowScratch& window, ComponentHistory& now,
                     Channels<float>* debug) {
   const RadianceBlend pass{noisy, sources, rule, at_rest, before, s, now, debug};
+  for_each_row(guides.view.height, [&](int y) { pass.read_row(y); });
+  pass.look_for_changes(guides);
+  pass.find_activity(guides);
   ChannelView<const float> spread;
-  for (int k = 0; k < pass.candidates(); ++k) {
-    for_each_row(guides.view.height, [&](int y) { pass.read_row(k, y); });
-    if (k == 0) pass.look_for_changes(guides);
-    spread = window_means(guides, s.differences, kStep, rule.window_step, window, s.means,
-                          kStep * k, nullptr, footprint);
-  }
+  for (int k = 0; k < pass.candidates(); ++k)
+    spread = window_means(guides, s.differences[k], kStep, rule.window_step, window, s.means,
+                          kStep * k, &s.activity, footprint);
   for_each_row(guides.view.height, [&](int y) { pass.blend_row(y, spread.row(y)); });
 }
 

@@ -26,19 +26,23 @@ struct RadianceBlendRule {
 /// Scratch of `blend_radiance`: for each candidate, R, G, B and samples; differences to the frame
 /// R, G, B and their square; local means of those.
 struct RadianceBlendScratch {
-  static constexpr int kPerCandidate = 4;
-  Channels<float> candidates, differences, means;
-  ActivityMap activity;
+  static constexpr int kPerCandidate = 4, kMostCandidates = 2;
+  Channels<float> candidates, differences[kMostCandidates], means;
+  ActivityMap activity;  ///< of the differences
   LightChange change;
 
   RadianceBlendScratch() = default;
   RadianceBlendScratch(int width, int height, int most_candidates)
       : candidates(width, height, kPerCandidate * most_candidates),
-        differences(width, height, kPerCandidate),
         means(width, height, kPerCandidate * most_candidates),
         activity(width, height),
-        change(width, height) {}
-  std::size_t bytes() const { return candidates.bytes() + differences.bytes() + means.bytes(); }
+        change(width, height) {
+    for (int k = 0; k < most_candidates; ++k)
+      differences[k] = Channels<float>(width, height, kPerCandidate);
+  }
+  std::size_t bytes() const {
+    return candidates.bytes() + differences[0].bytes() + differences[1].bytes() + means.bytes();
+  }
 };
 
 /// Blends RGB radiance with the candidate history of least expected error. For a candidate h with n

@@ -15,13 +15,13 @@ HOLDFAST_INLINE void read_body(const CandidateBlock& a) {
   TapLanes lanes;
   load_lanes(a.taps, a.count, a.noisy[0], lanes);
   float gathered[kTapBlock];
-  float* square_sum = a.scratch.differences[kSquare].row(a.y) + a.x;
+  float* square_sum = a.scratch.differences[a.k][kSquare].row(a.y) + a.x;
   for (int i = 0; i < a.count; ++i) square_sum[i] = 0.0f;
   for (int c = 0; c < 3; ++c) {
     gather_lanes(a.before.data[c], lanes, gathered);
     const float* current = a.noisy[c].row(a.y) + a.x;
     float* value = a.scratch.candidates[kStep * a.k + c].row(a.y) + a.x;
-    float* difference = a.scratch.differences[c].row(a.y) + a.x;
+    float* difference = a.scratch.differences[a.k][c].row(a.y) + a.x;
 #pragma GCC ivdep
     for (int i = 0; i < a.count; ++i) {
       const float there = gathered[i], here = current[i];

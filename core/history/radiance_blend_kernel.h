@@ -7,8 +7,6 @@
 /// instruction set.
 namespace holdfast {
 
-inline constexpr int kMostCandidates = 2;
-
 /// Reads candidate k: its values and samples, and its differences to the frame. Without taps the
 /// value is the frame's and the samples are 0.
 struct CandidateBlock {
@@ -22,7 +20,7 @@ void read_candidate(const CandidateBlock& block) noexcept;
 
 /// Chooses the candidate of least expected error for each pixel, and blends.
 struct RadianceBlendBlock {
-  const Taps* taps[kMostCandidates];
+  const Taps* taps[RadianceBlendScratch::kMostCandidates];
   int candidates, x, y, count;
   const Channels<float>& noisy;
   const ComponentHistory& before;

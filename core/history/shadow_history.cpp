@@ -34,6 +34,7 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
     any |= lanes.wanted[i] != 0;
   }
   if (!any) return false;
+  const bool moving = tracer.moving_blockers_near(x, y, count);
   std::uint32_t last_id = 0;
   int last_slot = frames.scene.slot_of(last_id);
   for (int i = 0; i < count; ++i) {
@@ -43,8 +44,9 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
     if (!lanes.wanted[i]) continue;
     if (id[i] != last_id) last_slot = frames.scene.slot_of(last_id = id[i]);
     lanes.surface[i] = last_slot;
-    lanes.occluder[i] =
-        own ? tracer.own_blocker_slot(x + i, y) : tracer.nearest_blocker_slot(x + i, y);
+    lanes.occluder[i] = !moving ? 0
+                        : own   ? tracer.own_blocker_slot(x + i, y)
+                                : tracer.nearest_blocker_slot(x + i, y);
   }
   return true;
 }

@@ -186,6 +186,24 @@ int ShadowTracer::nearest_blocker_slot(int x, int y) const {
   return 0;
 }
 
+bool ShadowTracer::moving_blockers_near(int x, int y, int count) const {
+  if (!id_) return false;
+  const int first_x = std::max(x - kBlockerSearchRadius, 0);
+  const int last_x = std::min(x + count + kBlockerSearchRadius, id_.width);
+  const int first_y = std::max(y - kBlockerSearchRadius, 0);
+  const int last_y = std::min(y + kBlockerSearchRadius, id_.height - 1);
+  std::uint32_t met = 0;
+  for (int slot = 1; slot < scene_.slot_count(); ++slot) {
+    const std::uint32_t wanted = scene_.id_of(slot);
+    for (int qy = first_y; qy <= last_y; ++qy) {
+      const std::uint32_t* id = id_.row(qy);
+      for (int qx = first_x; qx < last_x; ++qx) met |= id[qx] == wanted ? 1u : 0u;
+    }
+    if (met != 0) return true;
+  }
+  return false;
+}
+
 PixelPoint<float> ShadowTracer::follow(int x, int y, float ratio, float u, float v,
                                        int occluder_slot) const {
   constexpr PixelPoint<float> kNone{0, 0, 0, false};
