@@ -162,8 +162,8 @@ void ConeHistory::correct_pixel(const FramePair& frames, const Taps& taps, const
 }
 
 void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,
-                          const EffectHistory* effect, const Plane& directions,
-                          const ConeRule& rule, WindowScratch& window, Channels<float>& noisy) {
+                          const EffectHistory* effect, std::span<const ConeSamples> samples,
+                          const ConeRule& rule, WindowScratch& window) {
   constexpr int kBlock = 64;  // pixels: the rows of all channels stay in the first caches
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
@@ -177,9 +177,13 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
         if (!taps[i].any() && effect != nullptr) taps[i] = effect->taps[0].at(x0 + i, y);
       }
       recall(taps, count, x0, y);
-      for (int i = 0; i < count; ++i)
-        if (now.depth().at(x0 + i, y) > 0.0f)
-          correct_pixel(frames, taps[i], directions, rule, x0 + i, y, noisy);
+      for (int i = 0; i < count; ++i) {
+        if (!(now.depth().at(x0 + i, y) > 0.0f)) continue;
+        for (const ConeSamples& sample : samples) {
+          correct_pixel(frames, taps[i], *sample.directions, rule, x0 + i, y, *sample.radiance);
+          taps[i] = Taps{};  // cones turn once
+        }
+      }
     }
   });
   spread_out(now, window);
