@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <limits>
 
 #include "core/denoiser/component_filter.h"
@@ -129,7 +130,9 @@ class Denoiser::Impl {
       ComponentInput input = half.take(entry, scratch.noisy, frame.planes, timer);
       input.key = {config.seed, frame.index};
       timer.end("halve", 10);
+      timer.size_images(0.25);
       component_filter.run(input, half.scratch(), half.result(id));
+      timer.size_images(1);
       half.upsample_result(id, guides[now], scratch.noisy, out);
       timer.end("upsample", 10);
     } else {
@@ -240,7 +243,28 @@ std::size_t Denoiser::memory_bytes() const {
   return sum;
 }
 
-std::string Denoiser::plan_text() const { return impl_->plan.text(); }
+std::string Denoiser::plan_text() const {
+  const DenoiserConfig& config = impl_->config;
+  const double pixels = static_cast<double>(config.width) * config.height;
+  std::string text = impl_->plan.text();
+  const auto add = [&](const std::string& what, std::size_t bytes) {
+    if (bytes == 0) return;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.1f", static_cast<double>(bytes) / pixels);
+    text += what + ": " + number + " B/pixel held\n";
+  };
+  add("guides of two frames", impl_->guides[0].bytes() + impl_->guides[1].bytes());
+  add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
+  add("scratch", impl_->scratch.bytes());
+  add("all that is at half resolution, but for what components keep", impl_->half.bytes());
+  for (const ComponentFilter& filter : impl_->filters)
+    add("kept of " + component_name(filter.component()), filter.history_bytes());
+  std::size_t shaded = 0;
+  for (const Plane& plane : impl_->shaded) shaded += plane.bytes();
+  add("unshadowed light", shaded);
+  add("all buffers", memory_bytes());
+  return text;
+}
 
 namespace {
 

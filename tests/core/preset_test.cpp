@@ -152,6 +152,20 @@ TEST(Preset, HalfResolutionHoldsLessAndSaysSo) {
   EXPECT_NE(half.plan_text().find("glossy: at half resolution"), std::string::npos);
 }
 
+TEST(Preset, ThePlanSaysWhatPassesMoveAndBuffersHold) {
+  const std::string text = Denoiser(config_of("fast")).plan_text();
+  EXPECT_EQ(text.rfind("recipe reliable\npreset fast\n", 0), 0u) << text;
+  EXPECT_NE(text.find("levels of 3x3 taps, "), std::string::npos) << text;
+  EXPECT_NE(text.find("B/pixel held"), std::string::npos) << text;
+  EXPECT_NE(text.find("kept of light0.visibility: "), std::string::npos) << text;
+  // A quarter of the pixels, thus of the bytes.
+  DenoiserConfig whole = config_of("fast");
+  whole.half_resolution = {"none"};
+  EXPECT_NE(text.find("indirect: local statistics, 31 B/pixel"), std::string::npos) << text;
+  EXPECT_NE(Denoiser(whole).plan_text().find("indirect: local statistics, 124 B/pixel"),
+            std::string::npos);
+}
+
 // Nothing of a component of one object may show on another, whose light is a hundred times larger.
 TEST(Preset, HalfResolutionKeepsTheEdgesOfObjects) {
   for (const char* name : {"none", "indirect"}) {
