@@ -12,13 +12,13 @@ constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::k
 
 std::vector<Preset> make_presets() {
   const Preset fast{.name = "fast",
-                    .more_levels = 0,
                     .kernel_radius = 1,
                     .indirect_basis = RadianceBasis::kIrradiance,
                     .half_indirect = true,
                     .half_glossy = true};
   const Preset balanced{.name = "balanced"};
-  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
+  const Preset accurate{
+      .name = "accurate", .more_shadow_levels = 1, .indirect_basis = RadianceBasis::kConesColour};
   return {fast, balanced, accurate};
 }
 
@@ -90,10 +90,8 @@ Preset find_preset(const DenoiserConfig& config) {
 }
 
 void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
-  for (AdaptiveFilterSettings* filter : {&recipe.visibility_filter, &recipe.radiance_filter}) {
-    filter->levels = std::clamp(filter->levels + preset.more_levels, 1, kMostLevels);
-    filter->radius = preset.kernel_radius;
-  }
+  recipe.visibility_filter.levels += preset.more_shadow_levels;
+  recipe.visibility_filter.radius = recipe.radiance_filter.radius = preset.kernel_radius;
   if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)
     recipe.indirect_basis = preset.indirect_basis;
 }
