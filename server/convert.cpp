@@ -134,6 +134,8 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   core.recipe =
       checked_name("recipe", request.recipe(), ablated ? ablations : recipe_names(), core.recipe);
   core.preset = checked_name("preset", request.preset(), preset_names(), core.preset);
+  core.indirect_basis = request.indirect_basis();
+  core.half_resolution.assign(request.half_resolution().begin(), request.half_resolution().end());
   core.seed = request.seed();
   core.debug_planes = request.debug_planes();
   config.wire = checked_name("wire", request.wire(), wire_names(), config.wire);

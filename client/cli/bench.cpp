@@ -28,9 +28,13 @@ struct Timing {
   std::string plan;
 };
 
-Timing time_recipe(BenchFrames& frames, const std::string& recipe, int count) {
+Timing time_recipe(BenchFrames& frames, const BenchOptions& options, const std::string& recipe,
+                   int count) {
   DenoiserConfig config = frames.config();
   config.recipe = recipe;
+  config.preset = options.preset;
+  config.indirect_basis = options.indirect_basis;
+  config.half_resolution = options.half_resolution;
   Denoiser denoiser(config);
   PlaneSet results;
   std::vector<FrameReport> reports;
@@ -78,8 +82,8 @@ BenchResult run_bench(const BenchOptions& options) {
   std::vector<std::string> recipes = options.recipes;
   if (recipes.empty()) recipes.push_back(config.recipe);
   for (const std::string& recipe : recipes) {
-    const Timing timing = time_recipe(frames, recipe, options.frames);
-    result.frames.push_back({recipe, config.preset, timing.ms});
+    const Timing timing = time_recipe(frames, options, recipe, options.frames);
+    result.frames.push_back({recipe, options.preset, timing.ms});
     if (result.frames.size() > 1) continue;
     result.plan = timing.plan;
     for (const StageTime& stage : timing.stages)
@@ -88,7 +92,7 @@ BenchResult run_bench(const BenchOptions& options) {
   if (!options.reference) return result;
   const ScalarKernels scalar;
   const Timing reference =
-      time_recipe(frames, recipes.front(), std::min(options.frames, kReferenceFrames));
+      time_recipe(frames, options, recipes.front(), std::min(options.frames, kReferenceFrames));
   for (std::size_t k = 0; k < result.stages.size(); ++k)
     result.stages[k].reference_ns_per_pixel = reference.stages[k].ms * ns_per_pixel;
   return result;

@@ -12,9 +12,12 @@ struct BenchOptions {
   std::string scene = "fence";       ///< built-in scene, scene JSON file, or folder of a sequence
   int width = 1920, height = 1080;   ///< pixels; of no effect on a sequence
   std::vector<std::string> recipes;  ///< empty = "reliable"
-  int frames = 8;                    ///< timed frames of each recipe, >= 1, after two of warm-up
-  int threads = 0;                   ///< that filter; 0 = one for each core
-  bool reference = true;             ///< also time the scalar kernels
+  std::string preset = "balanced";
+  std::string indirect_basis;                ///< empty = the preset's
+  std::vector<std::string> half_resolution;  ///< empty = the preset's
+  int frames = 8;         ///< timed frames of each recipe, >= 1, after two of warm-up
+  int threads = 0;        ///< that filter; 0 = one for each core
+  bool reference = true;  ///< also time the scalar kernels
 };
 
 /// One stage of the core, as medians over frames.

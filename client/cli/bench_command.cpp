@@ -5,6 +5,7 @@
 #include "client/cli/command.h"
 #include "client/cli/image_size.h"
 #include "client/cli/json_file.h"
+#include "client/cli/preset_options.h"
 #include "client/scenes/load.h"
 
 namespace holdfast::cli {
@@ -29,6 +30,7 @@ void add_bench(CLI::App& app) {
       .add_option("--recipes", options.recipes,
                   "Recipes, with commas between; stages are the first one's. Default: reliable")
       ->delimiter(',');
+  add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution);
   command.add_option("--frames", options.frames, "Timed frames of each recipe, after two others")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

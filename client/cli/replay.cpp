@@ -46,6 +46,8 @@ client::SessionOptions session_options(const SequenceReader& sequence, const Rep
   session.planes = sequence.planes(wants_gradients(options));
   session.recipe = options.recipe;
   session.preset = options.preset;
+  session.indirect_basis = options.indirect_basis;
+  session.half_resolution = options.half_resolution;
   session.wire = options.wire;
   session.budget_ms = options.budget_ms;
   session.debug_planes = options.debug;

@@ -18,6 +18,8 @@ struct ReplayOptions {
   int threads = 0;            ///< of the server in this process; 0 = one for each core
   std::string recipe = "reliable";
   std::string preset = "balanced";
+  std::string indirect_basis;                ///< empty = the preset's
+  std::vector<std::string> half_resolution;  ///< empty = the preset's
   std::string wire = "exact";
   double budget_ms = 0;             ///< wished time of a frame in the core; 0 = none
   std::vector<std::string> layers;  ///< result planes to write; empty = all

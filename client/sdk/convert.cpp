@@ -56,6 +56,8 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
   for (const PlaneId id : options.planes) request.add_planes(plane_name(id));
   request.set_recipe(options.recipe);
   request.set_preset(options.preset);
+  request.set_indirect_basis(options.indirect_basis);
+  for (const std::string& name : options.half_resolution) request.add_half_resolution(name);
   request.set_seed(options.seed);
   request.set_debug_planes(options.debug_planes);
   request.set_budget_ms(options.budget_ms);

@@ -71,18 +71,19 @@ void clear_residual(ComponentHistory& history) {
 
 }  // namespace
 
-Scratch::Scratch(int width, int height, const Plan& plan, bool with_debug)
-    : noisy(width, height, plan.any_radiance ? 3 : 1),
-      measured(width, height, plan.any_footprint ? kMeasured : kField),
-      means(width, height, plan.any_footprint ? kMeasured : kField),
-      measured_activity(width, height),
-      window(width, height),
-      filter(width, height) {
-  if (plan.any_footprint) footprint = Channels<float>(width, height, 3);
-  if (plan.any_effect) effect = EffectHistory(width, height);
+Scratch::Scratch(int width, int height, const Plan& plan, const Plan::Grid& grid, bool with_debug)
+    : noisy(width, height, plan.full.any_radiance || plan.half.any_radiance ? 3 : 1) {
+  if (!grid.any) return;
+  measured = Channels<float>(width, height, grid.any_footprint ? kMeasured : kField);
+  means = Channels<float>(width, height, grid.any_footprint ? kMeasured : kField);
+  measured_activity = ActivityMap(width, height);
+  window = WindowScratch(width, height);
+  filter = FilterScratch(width, height);
+  if (grid.any_footprint) footprint = Channels<float>(width, height, 3);
+  if (grid.any_effect) effect = EffectHistory(width, height);
   if (plan.recipe.blending == Blending::kExpectedError) {
     blend = BlendScratch(width, height);
-    if (plan.any_radiance) radiance_blend = RadianceBlendScratch(width, height, 2);
+    if (grid.any_radiance) radiance_blend = RadianceBlendScratch(width, height, 2);
   }
   if (with_debug) debug = Channels<float>(width, height, kDebugChannels);
 }
@@ -115,7 +116,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   std::optional<ShadowTracer> tracer;
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
-  if (input.directions != nullptr) correct_by_cones(input, scratch);
+  if (!input.cone_samples.empty()) correct_by_cones(input, scratch);
   measure(input, tracer ? &*tracer : nullptr, scratch);
   input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
 
@@ -138,8 +139,13 @@ void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) 
     trace_effect(input, nullptr, s);
     input.timer.end("vectors", vectors_traffic());
   }
-  cones_.correct(input.frames, input.surface, follows ? &s.effect : nullptr, *input.directions,
-                 recipe_.cones, s.window, s.noisy);
+  cones_.correct(input.frames, input.surface, follows ? &s.effect : nullptr, input.cone_samples,
+                 recipe_.cones, s.window);
+  if (input.quads != nullptr) {
+    const Channels<float>* pixels[HalfGrid::kQuad];
+    for (std::size_t k = 0; k < HalfGrid::kQuad; ++k) pixels[k] = input.cone_samples[k].radiance;
+    mean_of_quads(pixels, channels_, *input.quads, s.noisy);
+  }
   input.timer.end("cones", cones_traffic(recipe_));
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
 #include "core/history/cone_history.h"
@@ -8,10 +10,11 @@
 #include "core/history/glossy_history.h"
 #include "core/history/gradients.h"
 #include "core/motion/shadow_field.h"
+#include "core/spatial/half_grid.h"
 
 namespace holdfast {
 
-/// Images that the components of a session need while they are filtered, one after the other.
+/// Images that the components of one resolution need while they are filtered, one after the other.
 /// Nothing in here outlives a component's turn.
 struct Scratch {
   Channels<float> noisy;      ///< the sanitised input: 1 or 3
@@ -28,7 +31,9 @@ struct Scratch {
   Channels<float> debug;      ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
-  Scratch(int width, int height, const Plan& plan, bool debug);
+  /// `grid`: the components that it is for. Without any, there is `noisy` alone: what is filtered
+  /// at another resolution comes in here, too.
+  Scratch(int width, int height, const Plan& plan, const Plan::Grid& grid, bool debug);
   std::size_t bytes() const;
 };
 
@@ -37,18 +42,21 @@ struct ComponentInput {
   FramePair frames;
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
-  BlockerPlanes blockers;
-  StageTimer& timer;         ///< told of each stage that ends
-  GlossyPlanes reflections;  ///< of a glossy component that follows them
-  FrameKey key;
-  const Plane* directions = nullptr;  ///< of the samples of a component kept by cones
-  bool gradients = false;             ///< Scratch::gradients holds samples of the component
+  BlockerPlanes blockers = {};
+  StageTimer& timer;              ///< told of each stage that ends
+  GlossyPlanes reflections = {};  ///< of a glossy component that follows them
+  FrameKey key = {};
+  std::span<const ConeSamples> cone_samples = {};  ///< of a component kept by cones: one a pixel,
+                                                   ///< Scratch::noisy, or, with `quads`, four
+  const HalfGrid* quads = nullptr;                 ///< what the means of those four are taken over
+  bool gradients = false;  ///< Scratch::gradients holds samples of the component
 };
 
 /// Filters one component in time and space, and keeps its history.
 ///   local statistics -> the effect's vectors -> blend with history -> spatial filter
 class ComponentFilter {
  public:
+  /// For images of that size.
   ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width, int height);
 
   /// Filters `scratch.noisy` into `out`. Fills `scratch.debug` if it is there.

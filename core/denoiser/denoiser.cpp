@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <limits>
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
 #include "core/denoiser/frame_input.h"
+#include "core/denoiser/half_frame.h"
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
@@ -38,7 +40,9 @@ void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
 class Denoiser::Impl {
  public:
   explicit Impl(const DenoiserConfig& c)
-      : config(c), plan(Plan::make(c)), scratch(c.width, c.height, plan, c.debug_planes) {
+      : config(c),
+        plan(Plan::make(c)),
+        scratch(c.width, c.height, plan, plan.full, c.debug_planes) {
     announced = result_planes(c);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) {
@@ -47,11 +51,13 @@ class Denoiser::Impl {
       if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
     }
     if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height);
-    if (plan.history) surface = SurfaceHistory(c.width, c.height);
+    if (plan.history && plan.full.any) surface = SurfaceHistory(c.width, c.height);
+    if (plan.half.any) half = HalfFrame(c, plan);
     for (const std::uint32_t light : plan.shaded_lights)
       shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height);
     for (const Plan::Entry& entry : plan.components) {
-      filters.emplace_back(entry, plan.recipe, c.width, c.height);
+      filters.emplace_back(entry, plan.recipe_of(entry), entry.half ? half_size(c.width) : c.width,
+                           entry.half ? half_size(c.height) : c.height);
       signals.push_back(component_plane(entry.component));
     }
   }
@@ -74,9 +80,13 @@ class Denoiser::Impl {
     load_guides(frame, report);
     timer.end("guides", 10);
     const FramePair frames{guides[now], guides[1 - now], scene};
-    if (has_past) {
+    if (has_past && plan.full.any) {
       trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
       timer.end("surface", 17);
+    }
+    if (plan.half.any) {
+      half.advance(guides[now], scene, frame.planes, has_past);
+      timer.end("half", 16);
     }
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
     for (std::size_t k = 0; k < filters.size(); ++k) {
@@ -115,7 +125,31 @@ class Denoiser::Impl {
     const PlaneId id = component_plane(entry.component);
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
     timer.end("input", 2 * scratch.noisy.count());
-    ComponentInput input{frames, has_past ? &surface : nullptr, nullptr, {}, timer, {}, {}};
+    Plane& out = results.add(id, config.width, config.height);
+    if (entry.half) {
+      ComponentInput input = half.take(entry, scratch.noisy, frame.planes, timer);
+      input.key = {config.seed, frame.index};
+      timer.end("halve", 10);
+      timer.size_images(0.25);
+      component_filter.run(input, half.scratch(), half.result(id));
+      timer.size_images(1);
+      half.upsample_result(id, guides[now], scratch.noisy, out);
+      timer.end("upsample", 10);
+    } else {
+      component_filter.run(full_input(frame, frames, entry, report, timer), scratch, out);
+    }
+    report.mean_history_frames +=
+        component_filter.mean_history_frames() / static_cast<double>(filters.size());
+    if (component_filter.changed_share() > 0)
+      report.changes.push_back({entry.component, component_filter.changed_share()});
+    if (config.debug_planes) write_debug(entry, results);
+  }
+
+  /// The input of a component of the frame's own resolution.
+  ComponentInput full_input(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
+                            FrameReport& report, StageTimer& timer) {
+    ComponentInput input{.frames = frames, .timer = timer};
+    if (has_past) input.surface = &surface;
     input.key = {config.seed, frame.index};
     input.gradients = entry.gradients;
     if (entry.gradients) {
@@ -131,18 +165,16 @@ class Denoiser::Impl {
                         &frame.planes.at(PlaneId::of_light(PlaneKind::kLightSample, light)),
                         frame.planes.find(PlaneId::of_light(PlaneKind::kBlockerId, light))};
     }
-    if (entry.cones) input.directions = frame.planes.find({PlaneKind::kIndirectDirection, {}});
+    if (entry.cones) {
+      cone_samples = {frame.planes.find({PlaneKind::kIndirectDirection, {}}), &scratch.noisy};
+      input.cone_samples = {&cone_samples, 1};
+    }
     if (entry.component.kind == ComponentKind::kGlossy &&
         (entry.has_footprint || entry.follows_effect))
       input.reflections = {&frame.planes.at({PlaneKind::kGlossyDirection, {}}),
                            &frame.planes.at({PlaneKind::kGlossyHitDistance, {}}),
                            frame.planes.find({PlaneKind::kGlossyHitId, {}})};
-    component_filter.run(input, scratch, results.add(id, config.width, config.height));
-    report.mean_history_frames +=
-        component_filter.mean_history_frames() / static_cast<double>(filters.size());
-    if (component_filter.changed_share() > 0)
-      report.changes.push_back({entry.component, component_filter.changed_share()});
-    if (config.debug_planes) write_debug(entry.component, results);
+    return input;
   }
 
   /// Images that `compose` reads and writes: depth, its terms and the sum.
@@ -152,17 +184,21 @@ class Denoiser::Impl {
     return count + (planes.find({PlaneKind::kEmission, {}}) ? 3 : 0);
   }
 
-  void write_debug(Component component, PlaneSet& results) {
-    const auto copy = [&](PlaneKind kind, int first) {
-      Plane& out = results.add({kind, component}, config.width, config.height);
+  void write_debug(const Plan::Entry& entry, PlaneSet& results) {
+    const Channels<float>& debug = entry.half ? half.scratch().debug : scratch.debug;
+    const int shrink = entry.half ? 2 : 1;
+    const auto copy = [&](PlaneKind kind, int first, float scale) {
+      Plane& out = results.add({kind, entry.component}, config.width, config.height);
       for (int c = 0; c < out.channels(); ++c)
         for_each_row(config.height, [&](int y) {
-          std::copy_n(scratch.debug[first + c].row(y), config.width, out.channel(c).row(y));
+          const float* in = debug[first + c].row(y / shrink);
+          float* to = out.channel(c).row(y);
+          for (int x = 0; x < config.width; ++x) to[x] = scale * in[x / shrink];
         });
     };
-    copy(PlaneKind::kDebugMotion, kDebugX);
-    copy(PlaneKind::kDebugHistory, kDebugFrames);
-    copy(PlaneKind::kDebugConfidence, kDebugTrust);
+    copy(PlaneKind::kDebugMotion, kDebugX, static_cast<float>(shrink));
+    copy(PlaneKind::kDebugHistory, kDebugFrames, 1.0f);
+    copy(PlaneKind::kDebugConfidence, kDebugTrust, 1.0f);
   }
 
   static void count_repairs(FrameReport& report, PlaneId plane, std::uint64_t values) {
@@ -175,6 +211,8 @@ class Denoiser::Impl {
   Guides guides[2];
   int now = 0;  ///< index of the current frame's guides
   SurfaceHistory surface;
+  HalfFrame half;
+  ConeSamples cone_samples{};  ///< of the component at hand
   SceneMotion scene;
   PlaneSet shaded;  ///< unshadowed light of `plan.shaded_lights`
   std::vector<ComponentFilter> filters;
@@ -200,19 +238,42 @@ const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 std::size_t Denoiser::memory_bytes() const {
   std::size_t sum =
       impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
+  sum += impl_->half.bytes();
   for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
   for (const Plane& plane : impl_->shaded) sum += plane.bytes();
   return sum;
 }
 
-std::string Denoiser::plan_text() const { return impl_->plan.text(); }
+std::string Denoiser::plan_text() const {
+  const DenoiserConfig& config = impl_->config;
+  const double pixels = static_cast<double>(config.width) * config.height;
+  std::string text = impl_->plan.text();
+  const auto add = [&](const std::string& what, std::size_t bytes) {
+    if (bytes == 0) return;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.1f", static_cast<double>(bytes) / pixels);
+    text += what + ": " + number + " B/pixel held\n";
+  };
+  add("guides of two frames", impl_->guides[0].bytes() + impl_->guides[1].bytes());
+  add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
+  add("scratch", impl_->scratch.bytes());
+  add("all that is at half resolution, but for what components keep", impl_->half.bytes());
+  for (const ComponentFilter& filter : impl_->filters)
+    add("kept of " + component_name(filter.component()), filter.history_bytes());
+  std::size_t shaded = 0;
+  for (const Plane& plane : impl_->shaded) shaded += plane.bytes();
+  add("unshadowed light", shaded);
+  add("all buffers", memory_bytes());
+  return text;
+}
 
 namespace {
 
-std::vector<std::string> names_of(const std::vector<Recipe>& recipes) {
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& all) {
   std::vector<std::string> names;
-  for (const Recipe& recipe : recipes) names.push_back(recipe.name);
+  for (const Named& one : all) names.push_back(one.name);
   return names;
 }
 
@@ -235,7 +296,7 @@ bool recipe_uses(std::string_view recipe, PlaneKind kind) {
 }
 
 const std::vector<std::string>& preset_names() {
-  static const std::vector<std::string> names{"balanced"};
+  static const std::vector<std::string> names = names_of(all_presets());
   return names;
 }
 

@@ -18,6 +18,13 @@ struct DenoiserConfig {
   std::vector<PlaneId> planes;  ///< exactly what every frame brings; depth and normal at least
   std::string recipe = "reliable";
   std::string preset = "balanced";
+  /// Instead of the preset's choice: "irradiance", "luminance-cones" or "cones"; empty = its
+  /// choice.
+  std::string indirect_basis;
+  /// Likewise the components filtered at half resolution: of "indirect" and "glossy", each at most
+  /// once, or "none" alone; empty = the preset's choice. A component that the session lacks, or
+  /// that has gradient samples, is not affected.
+  std::vector<std::string> half_resolution;
   std::uint64_t seed = 0;
   bool debug_planes = false;  ///< also return motion, history and confidence of each component
 };
@@ -76,7 +83,8 @@ class Denoiser {
   const DenoiserConfig& config() const;
   /// Bytes held for history and scratch.
   std::size_t memory_bytes() const;
-  /// The passes and buffers of this configuration, one per line.
+  /// The passes and buffers of this configuration, one per line, with the bytes that a pass moves
+  /// and a buffer holds for each pixel of the frame.
   std::string plan_text() const;
 
  private:

@@ -72,17 +72,25 @@ void check_planes(const DenoiserConfig& config) {
                        "missing");
 }
 
+bool is_halved(const Preset& preset, ComponentKind kind) {
+  switch (kind) {
+    case ComponentKind::kVisibility: return false;
+    case ComponentKind::kGlossy: return preset.half_glossy;
+    case ComponentKind::kIndirect: return preset.half_indirect;
+  }
+  return false;
+}
+
 }  // namespace
 
 Plan Plan::make(const DenoiserConfig& config) {
   check_size(config);
   check_lights(config);
   check_planes(config);
-  if (const auto& names = preset_names();
-      std::find(names.begin(), names.end(), config.preset) == names.end())
-    throw InputError("preset", "must be " + names.front(), "'" + config.preset + "'");
   Plan plan;
   plan.recipe = find_recipe(config.recipe);
+  plan.preset = find_preset(config);
+  apply(plan.preset, !config.indirect_basis.empty(), plan.recipe);
   const Recipe& recipe = plan.recipe;
   plan.history = recipe.blending != Blending::kNoHistory;
   for (const PlaneId id : config.planes) {
@@ -110,9 +118,12 @@ Plan Plan::make(const DenoiserConfig& config) {
     entry.gradients =
         recipe.gradient_levels > 0 && has(config, {PlaneKind::kGradient, entry.component});
     plan.any_gradients |= entry.gradients;
-    plan.any_radiance |= entry.component.kind != ComponentKind::kVisibility;
-    plan.any_footprint |= entry.has_footprint;
-    plan.any_effect |= entry.follows_effect;
+    entry.half = !entry.gradients && is_halved(plan.preset, entry.component.kind);
+    Grid& grid = entry.half ? plan.half : plan.full;
+    grid.any = true;
+    grid.any_radiance |= entry.component.kind != ComponentKind::kVisibility;
+    grid.any_footprint |= entry.has_footprint;
+    grid.any_effect |= entry.follows_effect;
   }
   for (const Light& light : config.lights)
     if (is_shaded_here(config, light)) plan.shaded_lights.push_back(light.id);
@@ -121,64 +132,12 @@ Plan Plan::make(const DenoiserConfig& config) {
   return plan;
 }
 
-namespace {
-
-const char* vectors_of(const Plan::Entry& entry) {
-  if (!entry.follows_effect) return "surface";
-  switch (entry.component.kind) {
-    case ComponentKind::kVisibility: return "shadow and surface";
-    case ComponentKind::kGlossy: return "reflection and surface";
-    case ComponentKind::kIndirect: return "surface and, where it was hidden, dual";
-  }
-  return "";
-}
-
-const char* basis_of(RadianceBasis basis) {
-  return basis == RadianceBasis::kConesColour ? "six cones of colour"
-                                              : "six cones of luminance and one chroma";
-}
-
-const char* blending_of(const Recipe& recipe) {
-  if (recipe.blending == Blending::kExpectedError) return "blended by expected error";
-  switch (recipe.accumulation.rectification) {
-    case Rectification::kNone: return "exponential mean";
-    case Rectification::kClamp:
-    case Rectification::kClampBox: return "exponential mean, clamped";
-    case Rectification::kClampFallback: return "exponential mean, clamped where vectors fail";
-  }
-  return "";
-}
-
-}  // namespace
-
-std::string Plan::text() const {
-  std::string text = "recipe " + recipe.name + "\n";
-  if (history) text += "frame: surface motion vectors and history taps\n";
-  for (const Entry& entry : components) {
-    const std::string name = component_name(entry.component);
-    const bool visibility = entry.component.kind == ComponentKind::kVisibility;
-    text +=
-        name + ": local statistics" +
-        (entry.has_footprint ? (visibility ? ", penumbra footprint" : ", lobe footprint") : "") +
-        "\n";
-    if (history)
-      text +=
-          name + ": history along " + vectors_of(entry) + " vectors, " + blending_of(recipe) + "\n";
-    if (entry.cones)
-      text += name + ": incident radiance by " + basis_of(recipe.indirect_basis) + "\n";
-    if (recipe.gradient_levels > 0)
-      text += name + (entry.gradients ? ": history replaced sooner by gradient samples\n"
-                                      : ": no gradient samples, history at its fixed pace\n");
-    const int levels = recipe.svgf_filter ? recipe.svgf_levels
-                       : visibility       ? recipe.visibility_filter.levels
-                                          : recipe.radiance_filter.levels;
-    text += name + ": " + (recipe.svgf_filter ? "variance-guided" : "sample-weighted") +
-            " a-trous, " + std::to_string(levels) + " levels\n";
-  }
-  for (const std::uint32_t light : shaded_lights)
-    text += "light" + std::to_string(light) + ".unshadowed: from the light's radiance, " +
-            (shaded_lobe ? "diffuse and specular" : "diffuse") + "\n";
-  return text + "frame: composite\n";
+Recipe Plan::recipe_of(const Entry& entry) const {
+  Recipe own = recipe;
+  if (!entry.half) return own;
+  own.radiance_filter.levels = std::max(own.radiance_filter.levels - 1, 1);
+  own.svgf_levels = std::max(own.svgf_levels - 1, 1);
+  return own;
 }
 
 }  // namespace holdfast

@@ -17,12 +17,16 @@ class StageTimer {
   /// Names of stages begin with "COMPONENT." from here on; with nothing, if it is empty.
   void enter(const std::string& component) { prefix_ = component.empty() ? "" : component + "."; }
 
+  /// Images are that much smaller than the frame from here on: 0.25 at half resolution, 1 at its
+  /// own.
+  void size_images(double share) { share_ = share; }
+
   /// `channels_moved`: images of one float that the stage's passes read or write, each once a pass;
   /// what must go through memory at least if caches keep nothing from pass to pass.
   void end(const char* stage, int channels_moved) {
     const auto now = Clock::now();
     out_.push_back({prefix_ + stage, std::chrono::duration<double, std::milli>(now - last_).count(),
-                    4.0 * channels_moved});
+                    4.0 * share_ * channels_moved});
     last_ = now;
   }
 
@@ -30,6 +34,7 @@ class StageTimer {
   using Clock = std::chrono::steady_clock;
   std::vector<StageTime>& out_;
   std::string prefix_;
+  double share_ = 1;
   Clock::time_point last_;
 };
 

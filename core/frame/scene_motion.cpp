@@ -61,6 +61,16 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
   }
 }
 
+void SceneMotion::follow_halved(const SceneMotion& full) {
+  *this = full;
+  view_ = view_.halved();
+  previous_view_ = previous_view_.halved();
+  for (ObjectMotion<float>& object : objects_) {
+    object.prev_pixel = halved_pixels(object.prev_pixel);
+    object.next_pixel = halved_pixels(object.next_pixel);
+  }
+}
+
 void SceneMotion::reset() { *this = SceneMotion(); }
 
 bool SceneMotion::at_rest() const {

@@ -31,6 +31,9 @@ class SceneMotion {
   /// that is not finite, a singular camera, or a light id that `known_lights` lacks.
   void advance(const Frame& frame, int width, int height, const std::vector<Light>& known_lights);
 
+  /// Becomes `full` in pixels of twice the size (ViewGeometry::halved).
+  void follow_halved(const SceneMotion& full);
+
   /// Forgets the past: the next frame counts as the first.
   void reset();
 

@@ -71,4 +71,15 @@ ViewGeometry::ViewGeometry(const Camera& camera, int image_width, int image_heig
   for (int c = 0; c < 4; ++c) pixel_from_relative[c][2] = -view_from_relative[c][2];
 }
 
+ViewGeometry ViewGeometry::halved() const {
+  ViewGeometry half = *this;
+  half.width = (width + 1) / 2;
+  half.height = (height + 1) / 2;
+  half.rays.lateral_x *= 2.0;
+  half.rays.lateral_y *= 2.0;
+  half.pixel_from_relative = halved_pixels(pixel_from_relative);
+  half.pixel_angle *= 2.0;
+  return half;
+}
+
 }  // namespace holdfast

@@ -43,7 +43,19 @@ struct ViewGeometry {
   ViewGeometry() = default;
   /// Throws InputError for a matrix that is not finite or not invertible.
   ViewGeometry(const Camera& camera, int image_width, int image_height);
+
+  /// The same view in pixels of twice the size, enough of them to cover the image: pixel (X, Y) of
+  /// the result covers (2X, 2Y) to (2X + 1, 2Y + 1).
+  ViewGeometry halved() const;
 };
+
+/// pixel_from_X for pixels of twice the size.
+template <class T>
+glm::mat<4, 4, T> halved_pixels(glm::mat<4, 4, T> pixel_from) {
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 2; ++r) pixel_from[c][r] *= T(0.5);
+  return pixel_from;
+}
 
 /// A projected point: pixel position and planar view depth in metres. Behind the camera, or beyond
 /// 1e9 pixels, x and y are 0 and `in_front` is false.

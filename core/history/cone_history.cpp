@@ -48,8 +48,8 @@ ConeRows ConeHistory::rows_at(int x, int y, int count) {
 }
 
 void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,
-                          const EffectHistory* effect, const Plane& directions,
-                          const ConeRule& rule, WindowScratch& window, Channels<float>& noisy) {
+                          const EffectHistory* effect, std::span<const ConeSamples> samples,
+                          const ConeRule& rule, WindowScratch& window) {
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     Taps taps[kTapBlock];
@@ -59,13 +59,15 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
       const ConeRows rows = rows_at(x, y, count);
       ConeCorrection block{now.depth().row(y) + x, {},   {}, rule.prior_samples,
                            rule.most_samples,      rows, {}};
-      for (int c = 0; c < 3; ++c) {
-        block.normal[c] = now.normal(c).row(y) + x;
-        block.direction[c] = directions.channel(c).row(y) + x;
-        block.noisy[c] = noisy[c].row(y) + x;
-      }
+      for (int c = 0; c < 3; ++c) block.normal[c] = now.normal(c).row(y) + x;
       recall(frames.previous, taps, block.normal, rows);
-      correct_by_cones(block);
+      for (const ConeSamples& sample : samples) {
+        for (int c = 0; c < 3; ++c) {
+          block.direction[c] = sample.directions->channel(c).row(y) + x;
+          block.noisy[c] = (*sample.radiance)[c].row(y) + x;
+        }
+        correct_by_cones(block);
+      }
     }
   });
   spread_out(now, window);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "core/history/cone_kernel.h"
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
@@ -12,6 +14,12 @@ namespace holdfast {
 struct ConeRule {
   float most_samples = 8.0f;    ///< that a cone remembers; older ones fade as new ones come
   float prior_samples = 0.03f;  ///< of the mean of all cones, which one without samples leans on
+};
+
+/// One sample a pixel: its radiance (R, G, B) and the direction that it came from, world space.
+struct ConeSamples {
+  const Plane* directions;
+  Channels<float>* radiance;
 };
 
 /// Incident radiance of every pixel by cone, from frame to frame; what it is good for is to take
@@ -32,15 +40,14 @@ class ConeHistory {
   explicit operator bool() const { return static_cast<bool>(kept_); }
   std::size_t bytes() const { return kept_.bytes() + updated_.bytes(); }
 
-  /// Replaces the samples `noisy` (R, G, B) by x', which may be negative, and learns from them.
-  /// `directions`: of the samples, world space; a pixel where that is (0,0,0), not finite or below
-  /// the surface keeps its sample and its cones. `surface`, `effect`: where each pixel's radiance
+  /// Replaces the samples, one or more a pixel, by x', which may be negative, and learns from them.
+  /// A sample whose direction is (0,0,0), not finite or below the surface stays, and teaches
+  /// nothing. `surface`, `effect`: where each pixel's radiance
   /// was one frame ago, `effect` where `surface` has no taps; either may be null, and without
   /// `surface` nothing is known.
-  ///   reads guides, taps, directions | writes noisy | halo 1 px
+  ///   reads guides, taps, directions | writes radiance | halo 1 px
   void correct(const FramePair& frames, const SurfaceHistory* surface, const EffectHistory* effect,
-               const Plane& directions, const ConeRule& rule, WindowScratch& window,
-               Channels<float>& noisy);
+               std::span<const ConeSamples> samples, const ConeRule& rule, WindowScratch& window);
 
  private:
   ConeRows rows_at(int x, int y, int count);

@@ -17,12 +17,12 @@ constexpr float kRestTolerance = 1e-6f;  // absolute; rounding of a constant vis
 /// far as later passes look.
 class Zones {
  public:
-  explicit Zones(int levels) : levels_(levels) {
-    const int reach = 2 * ((1 << levels) - 1);
+  Zones(int levels, int radius) : levels_(levels) {
+    const int reach = radius * ((1 << levels) - 1);
     int halo = reach;
     for (int level = levels - 1; level >= 0; --level) {
       halos_[levels - 1 - level] = halo;
-      halo += level > 0 ? 2 << level : 0;
+      halo += level > 0 ? radius << level : 0;
     }
     halos_[levels] = halo;          // the second pass of the luminance, of step 2
     halos_[levels + 1] = halo + 2;  // the first
@@ -112,7 +112,8 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
   assert(settings.levels >= 1 && settings.levels <= kMostLevels);
   ChannelView<const float> values[3];
   for (int c = 0; c < signal.channels; ++c) values[c] = (*signal.values)[c];
-  const Zones zones(settings.levels);
+  assert(settings.radius == 1 || settings.radius == 2);
+  const Zones zones(settings.levels, settings.radius);
   s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, zones.halos(),
                      kRestTolerance);
   prepare_luminance(guides, signal, settings.luminance_sigma, zones, s);
@@ -120,6 +121,7 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
 
   FilterRow pass;
   pass.guides = &guides;
+  if (settings.radius == 1) pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
   pass.channels = signal.channels;
   pass.activity = &s.activity;
   pass.spread = Spread::kSamples;

@@ -4,6 +4,7 @@
 
 #include "core/kernels/parallel.h"
 #include "core/kernels/variants.h"
+#include "core/spatial/tangent_planes.h"
 
 namespace holdfast {
 namespace {
@@ -11,57 +12,12 @@ namespace {
 constexpr int kBlock = 64;  // pixels; the block's state stays in the first cache
 
 /// Per-pixel terms of a block: the tangent plane, the normal and the running sums.
-struct Block {
-  float plane_0[kBlock], plane_x[kBlock], plane_y[kBlock];     // times the tap's depth
-  float offset_0[kBlock], offset_x[kBlock], offset_y[kBlock];  // added
-  float nx[kBlock], ny[kBlock], nz[kBlock];
+struct Block : TangentPlanes<kBlock> {
   float weight_sum[kBlock], spread_sum[kBlock];
   float sum[kMaxFilterChannels][kBlock];
   const float *luminance, *inverse_sigma;  // of the pixels; null where the pass has none
   const float *footprint_xx, *footprint_xy, *footprint_yy;
 };
-
-/// The distance of the point at depth d and offset (dx, dy) pixels from the tangent plane, divided
-/// by its tolerance, is d (plane_0 + dx plane_x + dy plane_y) + offset_0 + dx offset_x + dy
-/// offset_y.
-HOLDFAST_INLINE void load_planes(const FilterRow& a, int x0, int count, Block& b) {
-  const PixelRays<float>& rays = a.guides->rays;
-  const float py = static_cast<float>(a.y) + 0.5f;
-  const float l0x = rays.lateral_0.x + py * rays.lateral_y.x;
-  const float l0y = rays.lateral_0.y + py * rays.lateral_y.y;
-  const float l0z = rays.lateral_0.z + py * rays.lateral_y.z;
-  const float lxx = rays.lateral_x.x, lxy = rays.lateral_x.y, lxz = rays.lateral_x.z;
-  const float lyx = rays.lateral_y.x, lyy = rays.lateral_y.y, lyz = rays.lateral_y.z;
-  const float fx = rays.forward.x, fy = rays.forward.y, fz = rays.forward.z;
-  const float near_w = rays.near_weight, far_w = rays.far_weight;
-  const float tolerance = a.weights.plane_sigma_px * static_cast<float>(a.step) *
-                          static_cast<float>(a.guides->view.pixel_angle);
-  const float* __restrict depth = a.guides->depth().row(a.y) + x0;
-  const float* __restrict gx = a.guides->normal(0).row(a.y) + x0;
-  const float* __restrict gy = a.guides->normal(1).row(a.y) + x0;
-  const float* __restrict gz = a.guides->normal(2).row(a.y) + x0;
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i) {
-    const float d = depth[i] > 0.0f ? depth[i] : 1.0f;
-    const float inverse = 1.0f / (tolerance * (near_w + far_w * d));
-    const float px = static_cast<float>(x0 + i) + 0.5f;
-    const float nx = gx[i], ny = gy[i], nz = gz[i];
-    const float n_lateral =
-        (nx * (l0x + px * lxx) + ny * (l0y + px * lxy) + nz * (l0z + px * lxz)) * inverse;
-    const float n_x = (nx * lxx + ny * lxy + nz * lxz) * inverse;
-    const float n_y = (nx * lyx + ny * lyy + nz * lyz) * inverse;
-    const float n_forward = (nx * fx + ny * fy + nz * fz) * inverse;
-    b.nx[i] = nx;
-    b.ny[i] = ny;
-    b.nz[i] = nz;
-    b.plane_0[i] = far_w * n_lateral + n_forward;
-    b.plane_x[i] = far_w * n_x;
-    b.plane_y[i] = far_w * n_y;
-    b.offset_0[i] = near_w * n_lateral - ((near_w + far_w * d) * n_lateral + d * n_forward);
-    b.offset_x[i] = near_w * n_x;
-    b.offset_y[i] = near_w * n_y;
-  }
-}
 
 /// What a tap is weighed by and adds: rows of the images, all at the row of the tap.
 struct TapRow {
@@ -201,7 +157,8 @@ HOLDFAST_INLINE void add_taps_inside(const FilterRow& a, int x0, int count, int 
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_block(const FilterRow& a, int x0, int count, Block& b) {
   const int width = a.guides->view.width, height = a.guides->view.height;
-  load_planes(a, x0, count, b);
+  load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(a.step), x0, a.y,
+                      count, b);
   for (int i = 0; i < count; ++i) b.weight_sum[i] = 0.0f;
   for (int i = 0; i < count; ++i) b.spread_sum[i] = 0.0f;
   for (int c = 0; c < C; ++c)
@@ -215,17 +172,20 @@ HOLDFAST_INLINE void filter_block(const FilterRow& a, int x0, int count, Block& 
     b.footprint_xy = a.footprint[1].row(a.y) + x0;
     b.footprint_yy = a.footprint[2].row(a.y) + x0;
   }
-  // The pipeline's only radius for these terms, which is therefore the one that is made fast.
-  constexpr int kUsualRadius = kLuminance ? 2 : 1;
+  // The radii that the pipeline uses, which are therefore those that are made fast.
   const int reach = a.weights.radius * a.step;
-  const bool inside =
-      a.weights.radius == kUsualRadius && x0 >= reach && x0 + count + reach <= width;
+  const bool inside = x0 >= reach && x0 + count + reach <= width;
+  const bool wide = kLuminance && inside && a.weights.radius == 2;
+  const bool narrow = inside && a.weights.radius == 1;
   for (int ky = -a.weights.radius; ky <= a.weights.radius; ++ky) {
     if (a.y + ky * a.step < 0 || a.y + ky * a.step >= height) continue;
-    if (inside)
-      add_taps<C, kLuminance, kSpread, kFootprint, kUsualRadius>(a, x0, count, ky, b);
-    else
-      add_taps_inside<C, kLuminance, kSpread, kFootprint>(a, x0, count, ky, b);
+    if (narrow) {
+      add_taps<C, kLuminance, kSpread, kFootprint, 1>(a, x0, count, ky, b);
+      continue;
+    }
+    if constexpr (kLuminance)
+      if (wide) add_taps<C, kLuminance, kSpread, kFootprint, 2>(a, x0, count, ky, b);
+    if (!wide) add_taps_inside<C, kLuminance, kSpread, kFootprint>(a, x0, count, ky, b);
   }
   const float* __restrict depth = a.guides->depth().row(a.y) + x0;
   for (int c = 0; c < C; ++c) {

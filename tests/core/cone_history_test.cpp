@@ -178,8 +178,9 @@ struct Corrected {
           directions.channel(c).at(x, y) = direction[c];
         }
       }
-    cones.correct({now, before, scene}, known ? &surface : nullptr, nullptr, directions, ConeRule{},
-                  window, noisy);
+    const ConeSamples samples{&directions, &noisy};
+    cones.correct({now, before, scene}, known ? &surface : nullptr, nullptr, {&samples, 1},
+                  ConeRule{}, window);
     known = true;
   }
   double mean(int c) const {

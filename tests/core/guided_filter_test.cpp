@@ -125,8 +125,10 @@ class IsaGuard {
 // that is off by 3e-5 shifts a weighted mean of values in 0..1 by less than 2e-5.
 constexpr double kTolerance = 2e-5;
 
-void expect_oracle(Images& images, const Combination& combination, int step, int radius) {
-  const FilterRow pass = images.pass(combination, step, radius);
+void expect_oracle(Images& images, const Combination& combination, int step, int radius,
+                   std::initializer_list<float> kernel = {}) {
+  FilterRow pass = images.pass(combination, step, radius);
+  std::copy(kernel.begin(), kernel.end(), pass.weights.kernel);
   const test::FilterOracle oracle(pass, images.camera);
   const int width = images.guides.view.width, height = images.guides.view.height;
   std::vector<test::OraclePixel> expected;
@@ -168,6 +170,18 @@ TEST(GuidedFilter, AgreesWithTheOracleUnderAPerspectiveCamera) {
 
 TEST(GuidedFilter, AgreesWithTheOracleUnderAnOrthographicCamera) {
   expect_oracle_at_every_size(test::orthographic_camera);
+}
+
+TEST(GuidedFilter, AgreesWithTheOracleWithTheKernelOfThreeTaps) {
+  const IsaGuard guard;
+  test::Random random(27);
+  for (const auto& [width, height] : kSizes) {
+    Images images(test::perspective_camera(width, height), width, height, random);
+    for (const Combination& combination : kCombinations) {
+      if (!combination.luminance) continue;
+      for (const int step : {1, 4}) expect_oracle(images, combination, step, 1, {0.5f, 0.25f});
+    }
+  }
 }
 
 TEST(GuidedFilter, OneAndManyThreadsGiveTheSameBits) {

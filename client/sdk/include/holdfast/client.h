@@ -35,13 +35,16 @@ struct SessionOptions {
   /// old one is lost; 0 = none.
   int rewarm_frames = 4;
 
-  int width = 0;                 ///< pixels, 1..kMaxDimension
-  int height = 0;                ///< pixels, 1..kMaxDimension
-  std::vector<Light> lights;     ///< each id at most once
-  std::vector<PlaneId> planes;   ///< exactly what every frame brings; depth and normal at least
-  std::string recipe;            ///< empty = the server's default
-  std::string preset;            ///< empty = the server's default
-  std::uint64_t seed = 0;        ///< the same seed gives the same bits
+  int width = 0;                ///< pixels, 1..kMaxDimension
+  int height = 0;               ///< pixels, 1..kMaxDimension
+  std::vector<Light> lights;    ///< each id at most once
+  std::vector<PlaneId> planes;  ///< exactly what every frame brings; depth and normal at least
+  std::string recipe;           ///< empty = the server's default
+  std::string preset;           ///< empty = the server's default
+  std::string indirect_basis;   ///< "irradiance", "luminance-cones", "cones"; empty = the preset's
+  std::vector<std::string> half_resolution;  ///< of "indirect" and "glossy", or "none"; empty = the
+                                             ///< preset's
+  std::uint64_t seed = 0;                    ///< the same seed gives the same bits
   bool debug_planes = false;     ///< also motion, history and confidence of each component
   double budget_ms = 0;          ///< wished time of a frame in the core; 0 = none
   std::string wire = "exact";    ///< name of the wire profile

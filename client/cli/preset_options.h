@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace holdfast::cli {
+
+/// Adds --preset, --indirect-basis and --half-resolution, which the commands that filter share.
+/// What they name is checked by the core, whose errors name what is accepted.
+inline void add_preset_options(CLI::App& command, std::string& preset, std::string& indirect_basis,
+                               std::vector<std::string>& half_resolution) {
+  command.add_option("--preset", preset, "fast, balanced or accurate")->capture_default_str();
+  command.add_option("--indirect-basis", indirect_basis,
+                     "irradiance, luminance-cones or cones; default: the preset's");
+  command
+      .add_option("--half-resolution", half_resolution,
+                  "components filtered at half resolution, with commas between: indirect, glossy; "
+                  "or none; default: the preset's")
+      ->delimiter(',');
+}
+
+}  // namespace holdfast::cli

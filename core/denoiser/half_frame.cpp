@@ -1,0 +1,146 @@
+#include "core/denoiser/half_frame.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/kernels/parallel.h"
+#include "core/spatial/upsample.h"
+
+namespace holdfast {
+namespace {
+
+constexpr PlaneKind kHits[] = {PlaneKind::kGlossyDirection, PlaneKind::kGlossyHitDistance,
+                               PlaneKind::kGlossyHitId};
+
+bool is_of_hits(PlaneKind kind) {
+  return std::find(std::begin(kHits), std::end(kHits), kind) != std::end(kHits);
+}
+
+bool uses_hits(const Plan::Entry& entry) {
+  return entry.component.kind == ComponentKind::kGlossy &&
+         (entry.has_footprint || entry.follows_effect);
+}
+
+bool uses_hits(const Plan& plan) {
+  return std::any_of(plan.components.begin(), plan.components.end(),
+                     [](const Plan::Entry& entry) { return entry.half && uses_hits(entry); });
+}
+
+}  // namespace
+
+HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
+    : width_(half_size(config.width)),
+      height_(half_size(config.height)),
+      grid_(config.width, config.height),
+      scratch_(width_, height_, plan, plan.half, config.debug_planes) {
+  for (Guides& g : guides_) {
+    g = Guides(width_, height_);
+    if (plan.roughness) g.roughness = Channels<float>(width_, height_, 1);
+    if (plan.motion) g.motion = Channels<float>(width_, height_, 2);
+  }
+  if (plan.history) surface_ = SurfaceHistory(width_, height_);
+  for (const Plan::Entry& entry : plan.components)
+    if (entry.half) planes_.add(component_plane(entry.component), width_, height_);
+  for (const PlaneId id : config.planes)
+    if (id.kind == PlaneKind::kMotion || (is_of_hits(id.kind) && uses_hits(plan)))
+      planes_.add(id, width_, height_);
+  if (std::none_of(plan.components.begin(), plan.components.end(),
+                   [](const Plan::Entry& entry) { return entry.half && entry.cones; }))
+    return;
+  for (int k = 0; k < HalfGrid::kQuad; ++k) {
+    samples_[k] = Channels<float>(width_, height_, 3);
+    directions_[k] = Plane({PlaneKind::kIndirectDirection, {}}, width_, height_);
+  }
+}
+
+void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes,
+                        bool has_past) {
+  now_ = 1 - now_;
+  has_past_ = has_past;
+  scene_.follow_halved(scene);
+  Guides& now = guides_[now_];
+  now.view = scene_.view();
+  now.rays = now.view.rays.cast<float>();
+  choose_representatives(full, grid_);
+  halve_guides(full, grid_, now);
+  if (!has_past) return;
+  const Plane* motion = halved(PlaneKind::kMotion, planes);
+  if (motion != nullptr) halve_vectors();
+  trace_surface_history({now, guides_[1 - now_], scene_}, motion, surface_);
+}
+
+/// The representatives of a plane, or null if the session lacks it.
+const Plane* HalfFrame::halved(PlaneKind kind, const PlaneSet& planes) {
+  Plane* half = planes_.find({kind, {}});
+  if (half != nullptr) halve_plane(planes.at({kind, {}}), grid_, *half);
+  return half;
+}
+
+/// The client's motion vectors in half pixels.
+void HalfFrame::halve_vectors() {
+  Plane& motion = *planes_.find({PlaneKind::kMotion, {}});
+  for_each_row(height_, [&](int y) {
+    for (int c = 0; c < 2; ++c)
+      for (int x = 0; x < width_; ++x) motion.channel(c).at(x, y) *= 0.5f;
+  });
+}
+
+/// The samples of the quads' surfaces, each with its own direction.
+void HalfFrame::take_samples(const Channels<float>& noisy, const Plane& directions) {
+  for (int k = 0; k < HalfGrid::kQuad; ++k) cone_samples_[k] = {&directions_[k], &samples_[k]};
+  const int last_x = noisy.width() - 1, last_y = noisy.height() - 1;
+  for_each_row(height_, [&](int y) {
+    for (int k = 0; k < HalfGrid::kQuad; ++k)
+      for (int x = 0; x < width_; ++x) {
+        const int px = std::min(2 * x + k % 2, last_x), py = std::min(2 * y + k / 2, last_y);
+        const bool shown = grid_.share[k].at(x, y) > 0.0f;
+        for (int c = 0; c < 3; ++c) {
+          samples_[k][c].at(x, y) = noisy[c].at(px, py);
+          directions_[k].channel(c).at(x, y) = shown ? directions.channel(c).at(px, py) : 0.0f;
+        }
+      }
+  });
+}
+
+ComponentInput HalfFrame::take(const Plan::Entry& entry, const Channels<float>& noisy,
+                               const PlaneSet& planes, StageTimer& timer) {
+  ComponentInput input{.frames = {guides_[now_], guides_[1 - now_], scene_}, .timer = timer};
+  if (has_past_) input.surface = &surface_;
+  if (entry.cones) {
+    take_samples(noisy, planes.at({PlaneKind::kIndirectDirection, {}}));
+    input.cone_samples = cone_samples_;
+    input.quads = &grid_;
+  } else {
+    halve_signal(noisy, 3, grid_, scratch_.noisy);
+  }
+  if (uses_hits(entry))
+    input.reflections = {halved(kHits[0], planes), halved(kHits[1], planes),
+                         halved(kHits[2], planes)};
+  return input;
+}
+
+void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy,
+                                Plane& out) {
+  const Plane& half = planes_.at(id);
+  Upsample pass;
+  pass.full = &full;
+  pass.half = &guides_[now_];
+  pass.channels = half.channels();
+  for (int c = 0; c < half.channels(); ++c) {
+    pass.in[c] = half.channel(c);
+    pass.beyond[c] = noisy[c];
+    pass.out[c] = out.channel(c);
+  }
+  upsample(pass);
+}
+
+std::size_t HalfFrame::bytes() const {
+  std::size_t sum =
+      grid_.bytes() + surface_.taps.bytes() + surface_.motion.bytes() + scratch_.bytes();
+  for (const Guides& g : guides_) sum += g.bytes();
+  for (const Plane& plane : planes_) sum += plane.bytes();
+  for (int k = 0; k < HalfGrid::kQuad; ++k) sum += samples_[k].bytes() + directions_[k].bytes();
+  return sum;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/denoiser/component_filter.h"
+#include "core/denoiser/plan.h"
+#include "core/spatial/half_grid.h"
+
+namespace holdfast {
+
+/// A frame at half its resolution: what the components that the plan filters there share, and the
+/// way there and back. Empty where the plan has none.
+class HalfFrame {
+ public:
+  HalfFrame() = default;
+  HalfFrame(const DenoiserConfig& config, const Plan& plan);
+
+  /// Takes a frame's guides and, of its `planes`, the motion vectors; the guides of the frame
+  /// before stay. `has_past`: there is a frame before.
+  void advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes, bool has_past);
+
+  /// Takes a component's samples `noisy`, of the frame's size, and what of `planes` belongs to
+  /// them. Returns its input; `scratch().noisy` holds the quads' means.
+  ComponentInput take(const Plan::Entry& entry, const Channels<float>& noisy,
+                      const PlaneSet& planes, StageTimer& timer);
+
+  /// Where the component's filter writes.
+  Plane& result(PlaneId id) { return *planes_.find(id); }
+  /// Brings that result to the frame's size; pixels without surface show `noisy`.
+  void upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy, Plane& out);
+
+  Scratch& scratch() { return scratch_; }
+  std::size_t bytes() const;
+
+ private:
+  void take_samples(const Channels<float>& noisy, const Plane& directions);
+  const Plane* halved(PlaneKind kind, const PlaneSet& planes);
+  void halve_vectors();
+
+  int width_ = 0, height_ = 0;
+  HalfGrid grid_;
+  Guides guides_[2];
+  int now_ = 0;
+  bool has_past_ = false;
+  SceneMotion scene_;
+  SurfaceHistory surface_;
+  Scratch scratch_;
+  PlaneSet planes_;                           ///< halved inputs, and results
+  Channels<float> samples_[HalfGrid::kQuad];  ///< of each pixel of the quads, if kept by cones
+  Plane directions_[HalfGrid::kQuad];
+  ConeSamples cone_samples_[HalfGrid::kQuad] = {};
+};
+
+}  // namespace holdfast

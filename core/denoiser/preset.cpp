@@ -1,0 +1,108 @@
+#include "core/denoiser/preset.h"
+
+#include <algorithm>
+
+#include "core/frame/error.h"
+
+namespace holdfast {
+namespace {
+
+constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::kConesLuminance,
+                                    RadianceBasis::kConesColour};
+
+std::vector<Preset> make_presets() {
+  const Preset fast{.name = "fast",
+                    .kernel_radius = 1,
+                    .indirect_basis = RadianceBasis::kIrradiance,
+                    .half_indirect = true,
+                    .half_glossy = true};
+  const Preset balanced{.name = "balanced"};
+  const Preset accurate{
+      .name = "accurate", .more_shadow_levels = 1, .indirect_basis = RadianceBasis::kConesColour};
+  return {fast, balanced, accurate};
+}
+
+const Preset& preset_of_name(const std::string& name) {
+  std::string names;
+  for (const Preset& preset : all_presets()) {
+    if (preset.name == name) return preset;
+    names.append(names.empty() ? "" : ", ").append(preset.name);
+  }
+  throw InputError("preset", "must be one of " + names, "'" + name + "'");
+}
+
+RadianceBasis basis_of_name(const std::string& name) {
+  std::string names;
+  for (const RadianceBasis basis : kBases) {
+    if (basis_name(basis) == name) return basis;
+    names.append(names.empty() ? "" : ", ").append(basis_name(basis));
+  }
+  throw InputError("indirect basis", "must be one of " + names, "'" + name + "'");
+}
+
+void choose_basis(const DenoiserConfig& config, Preset& preset) {
+  if (config.indirect_basis.empty()) return;
+  preset.indirect_basis = basis_of_name(config.indirect_basis);
+  const auto has = [&](PlaneKind kind) {
+    return std::find(config.planes.begin(), config.planes.end(), PlaneId{kind, {}}) !=
+           config.planes.end();
+  };
+  if (preset.indirect_basis != RadianceBasis::kIrradiance && has(PlaneKind::kIndirect) &&
+      !has(PlaneKind::kIndirectDirection))
+    throw InputError("indirect basis",
+                     "must be irradiance without plane " +
+                         plane_name({PlaneKind::kIndirectDirection, {}}) + " in the session",
+                     "'" + config.indirect_basis + "'");
+}
+
+void choose_resolution(const DenoiserConfig& config, Preset& preset) {
+  const std::vector<std::string>& names = config.half_resolution;
+  if (names.empty()) return;
+  preset.half_indirect = preset.half_glossy = false;
+  for (const std::string& name : names) {
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw InputError("half resolution of " + name, "must be listed once", "listed twice");
+    if (name == "none") {
+      if (names.size() > 1)
+        throw InputError("half resolution of none", "must stand alone", "beside others");
+    } else if (name == "indirect") {
+      preset.half_indirect = true;
+    } else if (name == "glossy") {
+      preset.half_glossy = true;
+    } else {
+      throw InputError("half resolution", "must be of indirect, glossy or none", "'" + name + "'");
+    }
+  }
+}
+
+}  // namespace
+
+const std::vector<Preset>& all_presets() {
+  static const std::vector<Preset> presets = make_presets();
+  return presets;
+}
+
+Preset find_preset(const DenoiserConfig& config) {
+  Preset preset = preset_of_name(config.preset);
+  choose_basis(config, preset);
+  choose_resolution(config, preset);
+  return preset;
+}
+
+void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
+  recipe.visibility_filter.levels += preset.more_shadow_levels;
+  recipe.visibility_filter.radius = recipe.radiance_filter.radius = preset.kernel_radius;
+  if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)
+    recipe.indirect_basis = preset.indirect_basis;
+}
+
+const char* basis_name(RadianceBasis basis) {
+  switch (basis) {
+    case RadianceBasis::kIrradiance: return "irradiance";
+    case RadianceBasis::kConesLuminance: return "luminance-cones";
+    case RadianceBasis::kConesColour: return "cones";
+  }
+  return "";
+}
+
+}  // namespace holdfast

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/denoiser/denoiser.h"
+#include "core/denoiser/recipe.h"
+
+namespace holdfast {
+
+/// A preset: how much of a recipe's work is done. Data, not code; any preset goes with any recipe,
+/// and `balanced` takes every recipe as it is.
+struct Preset {
+  std::string name;
+  int more_shadow_levels = 0;  ///< a-trous levels of visibility beyond the recipe's, >= 0
+  int kernel_radius = 2;       ///< of the a-trous kernel: 1 (3x3 taps) or 2 (5x5)
+  RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
+  bool half_indirect = false;  ///< indirect light is filtered at half resolution
+  bool half_glossy = false;    ///< reflections likewise
+};
+
+/// All presets, fastest first.
+const std::vector<Preset>& all_presets();
+
+/// The preset of `config`, with what `config` chooses itself in place of it. Throws InputError for
+/// a name that is unknown, listed twice, or "none" beside others, and for cones of indirect light
+/// whose directions no frame brings.
+Preset find_preset(const DenoiserConfig& config);
+
+/// Puts the preset's choices into a recipe; `force_basis`: also if the recipe keeps no cones.
+void apply(const Preset& preset, bool force_basis, Recipe& recipe);
+
+/// Name of a basis, as DenoiserConfig::indirect_basis has it.
+const char* basis_name(RadianceBasis basis);
+
+}  // namespace holdfast
