@@ -17,8 +17,7 @@ std::vector<Preset> make_presets() {
                     .half_indirect = true,
                     .half_glossy = true};
   const Preset balanced{.name = "balanced"};
-  const Preset accurate{
-      .name = "accurate", .more_shadow_levels = 1, .indirect_basis = RadianceBasis::kConesColour};
+  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
   return {fast, balanced, accurate};
 }
 
@@ -90,7 +89,6 @@ Preset find_preset(const DenoiserConfig& config) {
 }
 
 void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
-  recipe.visibility_filter.levels += preset.more_shadow_levels;
   recipe.visibility_filter.radius = recipe.radiance_filter.radius = preset.kernel_radius;
   if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)
     recipe.indirect_basis = preset.indirect_basis;

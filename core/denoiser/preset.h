@@ -13,8 +13,7 @@ namespace holdfast {
 /// and `balanced` takes every recipe as it is.
 struct Preset {
   std::string name;
-  int more_shadow_levels = 0;  ///< a-trous levels of visibility beyond the recipe's, >= 0
-  int kernel_radius = 2;       ///< of the a-trous kernel: 1 (3x3 taps) or 2 (5x5)
+  int kernel_radius = 2;  ///< of the a-trous kernel: 1 (3x3 taps) or 2 (5x5)
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;  ///< indirect light is filtered at half resolution
   bool half_glossy = false;    ///< reflections likewise

@@ -43,7 +43,10 @@ namespace {
 TEST(Denoiser, AllocatesNothingOfAnImagesSizePerFrameAfterTheFirst) {
   for (const std::string& recipe : recipe_names()) {
     DenoiserConfig config = test::full_config(130, 64);
+    config.planes.push_back({PlaneKind::kIndirectDirection, {}});
     config.recipe = recipe;
+    config.preset = recipe == "reliable" || recipe == "svgf" ? "fast" : "balanced";
+    if (recipe == "paper") config.half_resolution = {"indirect"};  // with cones
     config.debug_planes = true;
     Denoiser denoiser(config);
     PlaneSet results;
