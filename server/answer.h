@@ -22,6 +22,9 @@ class PlanePool {
   std::vector<PlaneSet> spare_;
 };
 
+/// Why the history of a frame started anew.
+enum class ResetReason { kNone, kFirst, kCut, kEpoch, kFailure };
+
 /// What the filter made of one frame. Its planes go back to the pool when the last holder (the
 /// stream that sends it, the ledger that remembers it) lets go.
 class Answer {
@@ -34,6 +37,7 @@ class Answer {
 
   std::uint64_t epoch = 0;
   FrameReport report;
+  ResetReason reset = ResetReason::kNone;
   PlaneSet results;
 
  private:

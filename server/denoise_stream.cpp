@@ -12,13 +12,13 @@ using Clock = std::chrono::steady_clock;
 DenoiseStream* DenoiseStream::start(ServiceState& state) {
   const std::shared_ptr<DenoiseStream> stream(new DenoiseStream(state));
   stream->self_ = stream;
-  const bool admitted = state.streams.add(stream);
   std::unique_lock lock(stream->mutex_);
-  if (admitted)
+  try {
+    state.streams.add(stream);
     stream->read_on();
-  else
-    stream->end(status_from(
-        std::make_exception_ptr(RefusedError(Refusal::kDraining, "the server is shutting down"))));
+  } catch (...) {
+    stream->refuse(std::current_exception());
+  }
   stream->unlock_and_finish(lock);
   return stream.get();
 }
@@ -38,7 +38,7 @@ void DenoiseStream::OnReadDone(bool ok) {
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
       if (more) read_on();
     } catch (...) {
-      end(status_from(std::current_exception()));
+      refuse(std::current_exception());
     }
   }
   const auto self = heir_ ? shared_from_this() : nullptr;  // outlives what follows
@@ -137,7 +137,9 @@ void DenoiseStream::filter(FrameSlot& slot) {
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
+  slot.answered = Clock::now();
   if (wanted) log_frame(slot);
+  if (wanted) state_.metrics.filtered(slot);
   std::unique_lock lock(mutex_);
   if (broken_) {
     release(slot);
@@ -189,6 +191,7 @@ bool DenoiseStream::next_response() {
     sender_.reset();
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
+    state_.metrics.sent(std::chrono::duration<double>(Clock::now() - sent.answered).count());
     release(sent);
   }
   return false;
@@ -248,6 +251,11 @@ void DenoiseStream::close(const grpc::Status& status) {
   if (status_.ok()) status_ = status;
   if (!assembler_ || !assembler_->open()) end(status);
   unlock_and_finish(lock);
+}
+
+void DenoiseStream::refuse(std::exception_ptr error) {
+  state_.metrics.refused(error);
+  end(status_from(std::move(error)));
 }
 
 /// Nothing more is read; what is in flight is still answered.

@@ -64,6 +64,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   bool next_response();
   void release(FrameSlot& slot);
   void drop_unsent();
+  void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
 

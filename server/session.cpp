@@ -1,5 +1,7 @@
 #include "server/session.h"
 
+#include <algorithm>
+
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
 
@@ -22,11 +24,16 @@ std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t 
     if (epoch > epoch_ || !denoiser_) {
       denoiser_.reset();  // first, so that there are never two histories
       denoiser_.emplace(config_.denoiser);
+      if (epoch > epoch_) next_reset_ = ResetReason::kEpoch;
       epoch_ = epoch;
     }
     const std::shared_ptr<Answer> answer = ledger_.fresh();
     answer->report = denoiser_->filter(frame, answer->results);
     answer->epoch = epoch;
+    if (answer->report.history_reset)
+      answer->reset =
+          frame.cut && next_reset_ == ResetReason::kNone ? ResetReason::kCut : next_reset_;
+    next_reset_ = ResetReason::kNone;
     ledger_.keep(answer);
     const std::lock_guard lock(mutex_);
     counters_.last_frame = frame.index;
@@ -38,6 +45,7 @@ std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t 
     throw;
   } catch (...) {
     if (denoiser_) denoiser_->reset();
+    next_reset_ = ResetReason::kFailure;
     count_error();
     throw;
   }
@@ -71,6 +79,17 @@ std::size_t frame_bytes(const DenoiserConfig& config, int credits) {
   };
   const auto frames = static_cast<std::size_t>(credits);
   return bytes_of(config.planes) * frames + bytes_of(result_planes(config)) * (frames + 1);
+}
+
+std::size_t estimated_denoiser_bytes(const DenoiserConfig& config) {
+  constexpr int kProbeSize = 256;  // pixels; small, but padding is a small part of it
+  DenoiserConfig probe = config;
+  probe.width = std::min(config.width, kProbeSize);
+  probe.height = std::min(config.height, kProbeSize);
+  const double area = static_cast<double>(config.width) * config.height;
+  const double probe_area = static_cast<double>(probe.width) * probe.height;
+  const auto probe_bytes = static_cast<double>(Denoiser(probe).memory_bytes());
+  return static_cast<std::size_t>(probe_bytes * (area / probe_area));
 }
 
 }  // namespace holdfast::server

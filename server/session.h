@@ -65,7 +65,8 @@ class Session {
   std::size_t denoiser_bytes_;
   std::string plan_text_;
   AnswerLedger ledger_;
-  std::uint64_t epoch_ = 0;  ///< of the history
+  std::uint64_t epoch_ = 0;                       ///< of the history
+  ResetReason next_reset_ = ResetReason::kFirst;  ///< of the next frame, if its history starts anew
   const std::shared_ptr<Strand> strand_ = std::make_shared<Strand>();
   mutable std::mutex mutex_;
   SessionCounters counters_;
@@ -74,5 +75,10 @@ class Session {
 /// Bytes of the frames of a session that may be in flight at once, and of the answers that are
 /// remembered and made; results count whether or not they are sent back.
 std::size_t frame_bytes(const DenoiserConfig& config, int credits);
+
+/// What Denoiser::memory_bytes will be, or up to a quarter more, without making one of that size:
+/// buffers grow with the padded pixels, so a small one tells the bytes of a pixel. Throws
+/// InputError for a configuration that the core refuses.
+std::size_t estimated_denoiser_bytes(const DenoiserConfig& config);
 
 }  // namespace holdfast::server
