@@ -36,7 +36,8 @@ class Answer {
   Answer& operator=(const Answer&) = delete;
 
   std::uint64_t epoch = 0;
-  FrameReport report;
+  FrameReport report;    ///< of a dropped frame, the index alone
+  bool dropped = false;  ///< by the late-frame policy: no results
   ResetReason reset = ResetReason::kNone;
   PlaneSet results;
 

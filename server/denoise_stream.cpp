@@ -118,21 +118,24 @@ void DenoiseStream::read_on() {
 // --- filtering -----------------------------------------------------------------------------------
 
 void DenoiseStream::post(FrameSlot& slot) {
+  if (!slot.error) ++waiting_;
   state_.scheduler.post(session_->strand(),
                         [self = shared_from_this(), &slot] { self->filter(slot); });
 }
 
 void DenoiseStream::filter(FrameSlot& slot) {
   slot.started = Clock::now();
-  bool wanted = true;
+  bool wanted = true, late = false;
   {
     const std::lock_guard lock(mutex_);
     wanted = !broken_;
+    if (!slot.error) late = --waiting_ > 0 && session_->config().latest;
   }
   if (wanted && slot.error) session_->count_error();
   if (wanted && !slot.error) try {
       slot.answer = session_->repeat(slot.frame.index, slot.epoch);
       slot.repeated = slot.answer != nullptr;
+      if (!slot.answer && late) slot.answer = session_->drop(slot.frame, slot.epoch);
       if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());

@@ -89,6 +89,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
+  int waiting_ = 0;        ///< whole good frames that wait to be filtered
   bool reading_ = false;   ///< a read is under way
   bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot
   bool writing_ = false;   ///< a write is under way

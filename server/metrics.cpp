@@ -100,16 +100,15 @@ void Metrics::filtered(const FrameSlot& slot) {
     frames_.Add({{"result", invalid ? "invalid" : "failed"}}).Increment();
     return;
   }
-  frames_.Add({{"result", slot.repeated ? "repeated" : "ok"}}).Increment();
-  if (slot.repeated) return;
+  const bool dropped = slot.answer->dropped;
+  frames_.Add({{"result", slot.repeated ? "repeated" : dropped ? "dropped" : "ok"}}).Increment();
+  if (slot.repeated || dropped) return;
   filter_.Observe(slot.answer->report.ms / 1000);
   if (slot.answer->reset != ResetReason::kNone)
     resets_.Add({{"reason", name_of(slot.answer->reset)}}).Increment();
 }
 
 void Metrics::sent(double time_s) { send_.Observe(time_s); }
-
-void Metrics::dropped() { frames_.Add({{"result", "dropped"}}).Increment(); }
 
 void Metrics::refused(std::exception_ptr error) {
   const char* reason = "failure";

@@ -34,8 +34,6 @@ class Metrics {
   void filtered(const FrameSlot& slot);
   /// Its answer has been sent.
   void sent(double seconds);
-  /// A frame was dropped by the late-frame policy.
-  void dropped();
   /// A call or stream was refused.
   void refused(std::exception_ptr error);
   void session_ended(const char* reason, int count);

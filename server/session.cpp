@@ -1,6 +1,7 @@
 #include "server/session.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
@@ -16,7 +17,14 @@ Session::Session(std::string id, std::string token, SessionConfig config, int re
       plan_text_(denoiser_->plan_text()),
       ledger_(static_cast<std::size_t>(remembered)) {}
 
-std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t epoch) {
+std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch) {
+  // Taken for this frame only, also if it is refused: a bad transform must not spoil all that
+  // follow.
+  if (const auto carried = std::exchange(carried_, {}); carried && carried->epoch == epoch) {
+    frame.objects.insert(carried->objects.begin(), carried->objects.end());
+    frame.lights.insert(carried->lights.begin(), carried->lights.end());
+    frame.cut |= carried->cut;
+  }
   try {
     if (epoch < epoch_)
       throw InputError("epoch of frame " + std::to_string(frame.index),
@@ -49,6 +57,29 @@ std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t 
     count_error();
     throw;
   }
+}
+
+std::shared_ptr<const Answer> Session::drop(const Frame& frame, std::uint64_t epoch) {
+  const SessionCounters last = counters();
+  if (epoch < epoch_ || (epoch == last.epoch && last.last_frame && frame.index <= *last.last_frame))
+    return nullptr;
+  Carried carried;
+  if (carried_ && carried_->epoch == epoch) {
+    if (frame.index <= carried_->index) return nullptr;
+    carried = std::move(*carried_);
+  }
+  carried.epoch = epoch;
+  carried.index = frame.index;
+  carried.cut |= frame.cut;
+  for (const auto& [id, matrix] : frame.objects) carried.objects.insert_or_assign(id, matrix);
+  for (const auto& [id, matrix] : frame.lights) carried.lights.insert_or_assign(id, matrix);
+  carried_ = std::move(carried);
+  const std::shared_ptr<Answer> answer = ledger_.fresh();
+  answer->epoch = epoch;
+  answer->report.index = frame.index;
+  answer->dropped = true;
+  ledger_.keep(answer);
+  return answer;
 }
 
 std::shared_ptr<const Answer> Session::repeat(std::int64_t index, std::uint64_t epoch) {
