@@ -43,9 +43,10 @@ void DenoiseStream::OnReadDone(bool ok) {
   }
   const auto self = heir_ ? shared_from_this() : nullptr;  // outlives what follows
   const std::string taken_over = heir_ ? session_->id() : std::string();
+  const SessionLife::Hold hold = hold_;
   unlock_and_finish(lock);
   // After the mutex: two streams that take each other's session over must not wait for each other.
-  if (self) state_.streams.take_over(taken_over, this);
+  if (self) state_.streams.take_over(taken_over, hold);
 }
 
 /// True if the next message may be read.
@@ -228,8 +229,9 @@ void DenoiseStream::OnCancel() {
   unlock_and_finish(lock);
 }
 
-void DenoiseStream::yield() {
+void DenoiseStream::yield(SessionLife::Hold hold) {
   std::unique_lock lock(mutex_);
+  if (hold_ >= hold) return;
   if (status_.ok())
     status_ = status_from(std::make_exception_ptr(
         RefusedError(Refusal::kTakenOver, "a newer stream has the session")));

@@ -40,8 +40,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks
   /// are still coming in; later frames are not accepted.
   void close(const grpc::Status& status);
-  /// Ends the stream, because another one has its session: what is in flight is dropped.
-  void yield();
+  /// Ends the stream if `hold` on its session is newer than its own: what is in flight is dropped.
+  void yield(SessionLife::Hold hold);
   /// Empty before Hello.
   std::string session_id() const;
 

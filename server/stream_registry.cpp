@@ -44,9 +44,9 @@ void StreamRegistry::close_session(const std::string& session_id) {
       stream->close({grpc::StatusCode::NOT_FOUND, "session " + session_id + " was deleted"});
 }
 
-void StreamRegistry::take_over(const std::string& session_id, const DenoiseStream* heir) {
+void StreamRegistry::take_over(const std::string& session_id, SessionLife::Hold hold) {
   for (const auto& stream : all())
-    if (stream.get() != heir && stream->session_id() == session_id) stream->yield();
+    if (stream->session_id() == session_id) stream->yield(hold);
 }
 
 void StreamRegistry::drain(std::chrono::milliseconds deadline) {

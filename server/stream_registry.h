@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "server/session_life.h"
+
 namespace holdfast::server {
 
 class DenoiseStream;
@@ -24,8 +26,8 @@ class StreamRegistry {
   void remove(const DenoiseStream* stream);
   /// Closes the streams of a session, if it has any.
   void close_session(const std::string& session_id);
-  /// Ends every stream of the session but `heir`, which has taken the session over.
-  void take_over(const std::string& session_id, const DenoiseStream* heir);
+  /// Ends the streams of a session whose holds are older than `hold`.
+  void take_over(const std::string& session_id, SessionLife::Hold hold);
   /// Asks every stream to finish the frames in flight and end; refuses new ones.
   void drain(std::chrono::milliseconds deadline);
   /// Waits until no stream is open; false if some are at the deadline.
