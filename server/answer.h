@@ -22,6 +22,9 @@ class PlanePool {
   std::vector<PlaneSet> spare_;
 };
 
+/// Why the history of a frame started anew.
+enum class ResetReason { kNone, kFirst, kCut, kEpoch, kFailure };
+
 /// What the filter made of one frame. Its planes go back to the pool when the last holder (the
 /// stream that sends it, the ledger that remembers it) lets go.
 class Answer {
@@ -33,7 +36,9 @@ class Answer {
   Answer& operator=(const Answer&) = delete;
 
   std::uint64_t epoch = 0;
-  FrameReport report;
+  FrameReport report;    ///< of a dropped frame, the index alone
+  bool dropped = false;  ///< by the late-frame policy: no results
+  ResetReason reset = ResetReason::kNone;
   PlaneSet results;
 
  private:

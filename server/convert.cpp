@@ -143,6 +143,7 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
     throw InputError("budget", "must be finite and at least 0 ms",
                      std::to_string(config.budget_ms));
+  config.latest = request.late_frames() == v1::LATE_FRAMES_LATEST;
   config.results = results_from(request, core);
   return config;
 }
@@ -182,6 +183,8 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
   }
   const FrameReport& report = slot.answer->report;
   result.set_repeated(slot.repeated);
+  result.set_dropped(slot.answer->dropped);
+  if (slot.answer->dropped) return;
   timing.set_core_ms(report.ms);
   for (const StageTime& stage : report.stages) {
     v1::StageTime& out = *timing.add_stages();

@@ -12,13 +12,13 @@ using Clock = std::chrono::steady_clock;
 DenoiseStream* DenoiseStream::start(ServiceState& state) {
   const std::shared_ptr<DenoiseStream> stream(new DenoiseStream(state));
   stream->self_ = stream;
-  const bool admitted = state.streams.add(stream);
   std::unique_lock lock(stream->mutex_);
-  if (admitted)
+  try {
+    state.streams.add(stream);
     stream->read_on();
-  else
-    stream->end(status_from(
-        std::make_exception_ptr(RefusedError(Refusal::kDraining, "the server is shutting down"))));
+  } catch (...) {
+    stream->refuse(std::current_exception());
+  }
   stream->unlock_and_finish(lock);
   return stream.get();
 }
@@ -38,14 +38,15 @@ void DenoiseStream::OnReadDone(bool ok) {
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
       if (more) read_on();
     } catch (...) {
-      end(status_from(std::current_exception()));
+      refuse(std::current_exception());
     }
   }
   const auto self = heir_ ? shared_from_this() : nullptr;  // outlives what follows
   const std::string taken_over = heir_ ? session_->id() : std::string();
+  const SessionLife::Hold hold = hold_;
   unlock_and_finish(lock);
   // After the mutex: two streams that take each other's session over must not wait for each other.
-  if (self) state_.streams.take_over(taken_over, this);
+  if (self) state_.streams.take_over(taken_over, hold);
 }
 
 /// True if the next message may be read.
@@ -118,26 +119,31 @@ void DenoiseStream::read_on() {
 // --- filtering -----------------------------------------------------------------------------------
 
 void DenoiseStream::post(FrameSlot& slot) {
+  if (!slot.error) ++waiting_;
   state_.scheduler.post(session_->strand(),
                         [self = shared_from_this(), &slot] { self->filter(slot); });
 }
 
 void DenoiseStream::filter(FrameSlot& slot) {
   slot.started = Clock::now();
-  bool wanted = true;
+  bool wanted = true, late = false;
   {
     const std::lock_guard lock(mutex_);
     wanted = !broken_;
+    if (!slot.error) late = --waiting_ > 0 && session_->config().latest;
   }
   if (wanted && slot.error) session_->count_error();
   if (wanted && !slot.error) try {
       slot.answer = session_->repeat(slot.frame.index, slot.epoch);
       slot.repeated = slot.answer != nullptr;
+      if (!slot.answer && late) slot.answer = session_->drop(slot.frame, slot.epoch);
       if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
+  slot.answered = Clock::now();
   if (wanted) log_frame(slot);
+  if (wanted) state_.metrics.filtered(slot);
   std::unique_lock lock(mutex_);
   if (broken_) {
     release(slot);
@@ -189,6 +195,7 @@ bool DenoiseStream::next_response() {
     sender_.reset();
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
+    state_.metrics.sent(std::chrono::duration<double>(Clock::now() - sent.answered).count());
     release(sent);
   }
   return false;
@@ -222,8 +229,9 @@ void DenoiseStream::OnCancel() {
   unlock_and_finish(lock);
 }
 
-void DenoiseStream::yield() {
+void DenoiseStream::yield(SessionLife::Hold hold) {
   std::unique_lock lock(mutex_);
+  if (hold_ >= hold) return;
   if (status_.ok())
     status_ = status_from(std::make_exception_ptr(
         RefusedError(Refusal::kTakenOver, "a newer stream has the session")));
@@ -248,6 +256,11 @@ void DenoiseStream::close(const grpc::Status& status) {
   if (status_.ok()) status_ = status;
   if (!assembler_ || !assembler_->open()) end(status);
   unlock_and_finish(lock);
+}
+
+void DenoiseStream::refuse(std::exception_ptr error) {
+  state_.metrics.refused(error);
+  end(status_from(std::move(error)));
 }
 
 /// Nothing more is read; what is in flight is still answered.

@@ -40,8 +40,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   /// Ends the stream with `status` once the frames in flight are answered, also one whose chunks
   /// are still coming in; later frames are not accepted.
   void close(const grpc::Status& status);
-  /// Ends the stream, because another one has its session: what is in flight is dropped.
-  void yield();
+  /// Ends the stream if `hold` on its session is newer than its own: what is in flight is dropped.
+  void yield(SessionLife::Hold hold);
   /// Empty before Hello.
   std::string session_id() const;
 
@@ -64,6 +64,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   bool next_response();
   void release(FrameSlot& slot);
   void drop_unsent();
+  void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
 
@@ -88,6 +89,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
+  int waiting_ = 0;        ///< whole good frames that wait to be filtered
   bool reading_ = false;   ///< a read is under way
   bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot
   bool writing_ = false;   ///< a write is under way

@@ -18,7 +18,7 @@ struct FrameSlot {
   std::shared_ptr<const Answer> answer;  ///< null if there is an error
   bool repeated = false;                 ///< `answer` is that of an earlier time
   std::optional<v1::FrameError> error;
-  TimePoint begun, ended, started;  ///< FrameBegin, FrameEnd, start of filtering
+  TimePoint begun, ended, started, answered;  ///< FrameBegin, FrameEnd, filtering
 };
 
 }  // namespace holdfast::server

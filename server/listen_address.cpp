@@ -50,7 +50,7 @@ struct Socket {
   int fd;
 };
 
-void check_unix(const std::string& address) {
+sockaddr_un unix_name(const std::string& address) {
   const std::string path = address.substr(std::strlen(kUnix));
   sockaddr_un name{};
   if (path.empty() || path.size() >= sizeof(name.sun_path))
@@ -59,6 +59,11 @@ void check_unix(const std::string& address) {
            std::to_string(path.size()) + " bytes");
   name.sun_family = AF_UNIX;
   std::memcpy(name.sun_path, path.data(), path.size());
+  return name;
+}
+
+void check_unix(const std::string& address) {
+  const sockaddr_un name = unix_name(address);
   const Socket probe(AF_UNIX);
   if (connect(probe.fd, reinterpret_cast<const sockaddr*>(&name), sizeof(name)) == 0)
     refuse(address, "must be free", "in use: another server listens there");
@@ -81,6 +86,13 @@ void check_tcp(const std::string& address, const HostPort& target) {
 }
 
 }  // namespace
+
+void check_address_form(const std::string& address) {
+  if (address.starts_with(kUnix))
+    unix_name(address);
+  else
+    split(address);
+}
 
 void check_listen_address(const std::string& address) {
   if (address.starts_with(kUnix))

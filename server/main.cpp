@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/frame/error.h"
+#include "server/options.h"
 #include "server/server.h"
 #include "server/version.h"
 
@@ -21,46 +22,23 @@ sigset_t block_stop_signals() {
   return signals;
 }
 
-void add_options(CLI::App& app, holdfast::server::ServerConfig& config, int& linger_ms,
-                 int& drain_ms) {
-  app.add_option("--listen", config.listen, "host:port (port 0 = any free one) or unix:PATH")
-      ->capture_default_str();
-  app.add_option("--threads", config.threads, "threads that filter; 0 = one for each core")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1024));
-  app.add_option("--log-level", config.log_level, "trace, debug, info, warn, error or off")
-      ->capture_default_str();
-  app.add_option("--max-sessions", config.limits.max_sessions, "sessions that may exist at once")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
-  app.add_option("--max-session-bytes", config.limits.max_session_bytes, "memory of one session")
-      ->capture_default_str();
-  app.add_option("--max-total-bytes", config.limits.max_total_bytes, "memory of all sessions")
-      ->capture_default_str();
-  app.add_option("--credits", config.limits.credits, "frames in flight for each session")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 16));
-  app.add_option("--linger-ms", linger_ms, "how long a session is kept without a stream")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 86400000));
-  app.add_option("--drain-ms", drain_ms, "time for frames in flight when told to stop")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 3600000));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   holdfast::server::ServerConfig config;
-  int linger_ms = static_cast<int>(config.limits.linger.count());
-  int drain_ms = static_cast<int>(config.drain_deadline.count());
+  bool only_check = false;
   CLI::App app{"holdfast-server: denoises ray-traced frames for clients over gRPC"};
   app.set_version_flag("--version", std::string("holdfast-server ") + holdfast::server::kVersion);
-  add_options(app, config, linger_ms, drain_ms);
+  app.add_flag("--check-config", only_check, "check the configuration, print it, and end")
+      ->configurable(false);
+  holdfast::server::add_options(app, config);
   try {
     app.parse(argc, argv);
-    config.limits.linger = std::chrono::milliseconds(linger_ms);
-    config.drain_deadline = std::chrono::milliseconds(drain_ms);
+    if (only_check) {
+      holdfast::server::check_config(config);
+      std::printf("%s", holdfast::server::options_text(app).c_str());
+      return kDone;
+    }
     const sigset_t signals = block_stop_signals();
     holdfast::server::Server server(config);
     int signal = 0;

@@ -14,7 +14,7 @@ bool ResultSender::next(v1::DenoiseResponse& response) {
     write_frame_result(slot_, config_, *response.mutable_frame_result());
     return true;
   }
-  if (slot_.error || plane_ == config_.results.size()) return false;
+  if (slot_.error || slot_.answer->dropped || plane_ == config_.results.size()) return false;
 
   const Plane& plane = slot_.answer->results.at(config_.results[plane_]);
   const std::size_t size = wire::plane_bytes(plane);

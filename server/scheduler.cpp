@@ -15,8 +15,9 @@ int leader_count(int threads) { return std::max(1, threads / 4); }
 
 }  // namespace
 
-Scheduler::Scheduler(int threads)
-    : threads_(thread_count(threads)),
+Scheduler::Scheduler(int threads, Clock clock)
+    : clock_(std::move(clock)),
+      threads_(thread_count(threads)),
       leaders_(leader_count(threads_)),
       arena_(threads_, static_cast<unsigned>(leaders_)) {
   // oneTBB makes one worker less than there are cores; more must be asked for.
@@ -41,9 +42,20 @@ void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()
     strand->jobs_.push_back(std::move(job));
     if (strand->ready_) return;
     strand->ready_ = true;
+    strand->used_ = std::max(strand->used_, level_);
     line_.push_back(strand);
   }
   wake_.notify_one();
+}
+
+/// Takes the strand whose turn it is out of the line; called with the mutex held.
+std::shared_ptr<Strand> Scheduler::next() {
+  const auto it = std::min_element(
+      line_.begin(), line_.end(), [](const auto& a, const auto& b) { return a->used_ < b->used_; });
+  std::shared_ptr<Strand> strand = std::move(*it);
+  line_.erase(it);
+  level_ = std::max(level_, strand->used_);
+  return strand;
 }
 
 void Scheduler::lead() {
@@ -51,15 +63,17 @@ void Scheduler::lead() {
   for (;;) {
     wake_.wait(lock, [this] { return stopping_ || !line_.empty(); });
     if (line_.empty()) return;
-    const std::shared_ptr<Strand> strand = std::move(line_.front());
-    line_.pop_front();
+    const std::shared_ptr<Strand> strand = next();
     std::function<void()> job = std::move(strand->jobs_.front());
     strand->jobs_.pop_front();
     lock.unlock();
+    const auto start = clock_();
     // Isolated: while this thread waits for the end of its own loop it takes no other frame's work.
     arena_.execute([&] { oneapi::tbb::this_task_arena::isolate(job); });
+    const auto used = clock_() - start;
     job = nullptr;  // what it holds is released before anyone can see the strand idle
     lock.lock();
+    strand->used_ += used;
     if (strand->jobs_.empty()) {
       strand->ready_ = false;
     } else {

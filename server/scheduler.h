@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -19,17 +20,22 @@ class Strand {
  private:
   friend class Scheduler;
   std::deque<std::function<void()>> jobs_;
-  bool ready_ = false;  ///< in the scheduler's ready list, or running
+  bool ready_ = false;               ///< in the scheduler's line, or running
+  std::chrono::nanoseconds used_{};  ///< time that its jobs have taken
 };
 
 /// The worker pool that all sessions share. A fixed number of threads filters frames: a few of them
 /// lead, each one frame at a time, and the others join the parallel loops of whichever frame has
-/// work. A strand that has run a job goes to the end of the line, so that sessions take turns frame
-/// by frame, whatever the length of their queues.
+/// work. The next frame is one of the strand whose jobs have taken the least time, so that sessions
+/// share the machine by time, whatever the length of their queues and the size of their frames;
+/// those that have taken the same take turns. A strand that had nothing to do saves up no time: it
+/// begins level with the strand whose turn it is.
 class Scheduler {
  public:
   /// `threads`: all threads that filter, leaders included; 0 = one for each core.
-  explicit Scheduler(int threads);
+  /// The clock can be replaced in tests.
+  using Clock = std::function<std::chrono::steady_clock::time_point()>;
+  explicit Scheduler(int threads, Clock clock = std::chrono::steady_clock::now);
   /// Runs what was posted, then stops.
   ~Scheduler();
 
@@ -41,13 +47,16 @@ class Scheduler {
 
  private:
   void lead();
+  std::shared_ptr<Strand> next();
 
+  const Clock clock_;
   int threads_, leaders_;
   std::optional<oneapi::tbb::global_control> more_workers_;
   oneapi::tbb::task_arena arena_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::shared_ptr<Strand>> line_;
+  std::chrono::nanoseconds level_{};  ///< time used by the strand whose turn was last
   bool stopping_ = false;
   std::vector<std::thread> pool_;
 };

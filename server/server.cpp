@@ -9,6 +9,8 @@
 
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
+#include "server/admin_http.h"
+#include "server/credentials.h"
 #include "server/denoise_service.h"
 #include "server/listen_address.h"
 #include "server/log.h"
@@ -21,16 +23,12 @@ namespace {
 constexpr int kHttp2FrameBytes = 1 << 20;  // fewer, larger frames: less CPU for large messages
 constexpr std::chrono::seconds kExpiryPeriod{1};
 
-// A peer that is frozen, or gone without a word, is noticed after the sum of the first two.
-constexpr int kKeepaliveMs = 10000;
-constexpr int kKeepaliveTimeoutMs = 5000;
 constexpr int kMinPingMs = 5000;  // between a client's own pings
 
+int milliseconds(std::chrono::milliseconds time) { return static_cast<int>(time.count()); }
+
 const ServerConfig& checked(const ServerConfig& config) {
-  if (config.threads < 0)
-    throw InputError("threads", "must be at least 0", std::to_string(config.threads));
-  if (config.limits.credits < 1)
-    throw InputError("credits", "must be at least 1", std::to_string(config.limits.credits));
+  check_config(config);
   check_listen_address(config.listen);
   return config;
 }
@@ -70,12 +68,13 @@ class Server::Impl {
         denoise_service_(state_) {
     start();
     expiry_.emplace(kExpiryPeriod, [this] {
-      if (const int ended = state_.sessions.expire(); ended > 0)
-        state_.log->info("event=session_expire count={}", ended);
+      if (const int ended = state_.sessions.expire(); ended > 0) expired(ended);
     });
+    if (!config.admin.empty()) start_admin();
   }
 
   ~Impl() {
+    admin_.reset();
     server_->Shutdown(std::chrono::system_clock::now());
     server_->Wait();
     // A stream is gone only after its OnDone, which may run after Wait.
@@ -94,20 +93,37 @@ class Server::Impl {
   }
 
   const std::string& address() const { return address_; }
+  std::string admin_address() const { return admin_ ? admin_->address() : std::string(); }
 
  private:
+  void expired(int count) {
+    state_.metrics.session_ended("expired", count);
+    state_.log->info("event=session_expire count={}", count);
+  }
+
+  void start_admin() {
+    const auto ready = [this] { return !state_.draining; };
+    const auto metrics = [this, ready] {
+      return state_.metrics.text(
+          {state_.sessions.size(), state_.streams.size(), state_.sessions.total_bytes(), ready()});
+    };
+    admin_.emplace(state_.config.admin, AdminPages{ready, metrics});
+    state_.log->info("event=admin_listening address={}", admin_->address());
+  }
+
   void start() {
     const std::string& listen = state_.config.listen;
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     grpc::ServerBuilder builder;
     int port = 0;
-    builder.AddListeningPort(listen, grpc::InsecureServerCredentials(), &port);
+    builder.AddListeningPort(listen, make_credentials(state_.config.tls), &port);
     builder.SetMaxReceiveMessageSize(wire::kMaxMessageBytes);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
     builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, milliseconds(state_.config.keepalive));
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS,
+                               milliseconds(state_.config.keepalive_timeout));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinPingMs);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     // The probe finds the window of a long link; a unix socket has none to find.
@@ -125,9 +141,8 @@ class Server::Impl {
     if (auto* health = server_->GetHealthCheckService()) health->SetServingStatus(true);
     state_.log->info("event=listening address={} threads={} version={}", address_,
                      state_.scheduler.threads(), kVersion);
-    if (!is_local_address(listen))
-      state_.log->warn("event=exposed address={}: traffic is neither encrypted nor authenticated",
-                       address_);
+    if (!is_local_address(listen) && state_.config.tls.certificate.empty())
+      state_.log->warn("event=exposed address={}: traffic is not encrypted", address_);
   }
 
   ServiceState state_;
@@ -136,11 +151,13 @@ class Server::Impl {
   std::string address_;
   std::unique_ptr<grpc::Server> server_;
   std::optional<Timer> expiry_;
+  std::optional<AdminHttp> admin_;
 };
 
 Server::Server(const ServerConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 Server::~Server() = default;
 const std::string& Server::address() const { return impl_->address(); }
+std::string Server::admin_address() const { return impl_->admin_address(); }
 void Server::drain(std::chrono::milliseconds deadline) { impl_->drain(deadline); }
 
 }  // namespace holdfast::server

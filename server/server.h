@@ -18,8 +18,10 @@ class Server {
 
   /// What clients connect to: the listen address, with the actual port where 0 was asked for.
   const std::string& address() const;
+  /// host:port of the admin port, with the actual port; empty if there is none.
+  std::string admin_address() const;
 
-  /// Shuts down in order: health goes to NOT_SERVING, new sessions and streams are refused, streams
+  /// Shuts down in order: health and /readyz say so, new sessions and streams are refused, streams
   /// are told, frames in flight are answered. At `deadline` what is still open is cut.
   void drain(std::chrono::milliseconds deadline);
 

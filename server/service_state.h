@@ -6,19 +6,28 @@
 #include <spdlog/logger.h>
 
 #include "server/config.h"
+#include "server/metrics.h"
 #include "server/scheduler.h"
 #include "server/session_table.h"
 #include "server/stream_registry.h"
+#include "server/token_file.h"
 
 namespace holdfast::server {
 
 /// What all calls share. Outlives every call.
 struct ServiceState {
   ServiceState(const ServerConfig& c, std::shared_ptr<spdlog::logger> l)
-      : config(c), log(std::move(l)), sessions(c.limits), scheduler(c.threads) {}
+      : config(c),
+        log(std::move(l)),
+        tokens(c.token_file),
+        sessions(c.limits),
+        streams(c.max_streams),
+        scheduler(c.threads) {}
 
   const ServerConfig config;
   const std::shared_ptr<spdlog::logger> log;
+  Metrics metrics;
+  TokenFile tokens;
   SessionTable sessions;
   StreamRegistry streams;
   Scheduler scheduler;

@@ -1,5 +1,8 @@
 #include "server/session.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
 
@@ -14,7 +17,14 @@ Session::Session(std::string id, std::string token, SessionConfig config, int re
       plan_text_(denoiser_->plan_text()),
       ledger_(static_cast<std::size_t>(remembered)) {}
 
-std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t epoch) {
+std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch) {
+  // Taken for this frame only, also if it is refused: a bad transform must not spoil all that
+  // follow.
+  if (const auto carried = std::exchange(carried_, {}); carried && carried->epoch == epoch) {
+    frame.objects.insert(carried->objects.begin(), carried->objects.end());
+    frame.lights.insert(carried->lights.begin(), carried->lights.end());
+    frame.cut |= carried->cut;
+  }
   try {
     if (epoch < epoch_)
       throw InputError("epoch of frame " + std::to_string(frame.index),
@@ -22,11 +32,16 @@ std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t 
     if (epoch > epoch_ || !denoiser_) {
       denoiser_.reset();  // first, so that there are never two histories
       denoiser_.emplace(config_.denoiser);
+      if (epoch > epoch_) next_reset_ = ResetReason::kEpoch;
       epoch_ = epoch;
     }
     const std::shared_ptr<Answer> answer = ledger_.fresh();
     answer->report = denoiser_->filter(frame, answer->results);
     answer->epoch = epoch;
+    if (answer->report.history_reset)
+      answer->reset =
+          frame.cut && next_reset_ == ResetReason::kNone ? ResetReason::kCut : next_reset_;
+    next_reset_ = ResetReason::kNone;
     ledger_.keep(answer);
     const std::lock_guard lock(mutex_);
     counters_.last_frame = frame.index;
@@ -38,9 +53,33 @@ std::shared_ptr<const Answer> Session::filter(const Frame& frame, std::uint64_t 
     throw;
   } catch (...) {
     if (denoiser_) denoiser_->reset();
+    next_reset_ = ResetReason::kFailure;
     count_error();
     throw;
   }
+}
+
+std::shared_ptr<const Answer> Session::drop(const Frame& frame, std::uint64_t epoch) {
+  const SessionCounters last = counters();
+  if (epoch < epoch_ || (epoch == last.epoch && last.last_frame && frame.index <= *last.last_frame))
+    return nullptr;
+  Carried carried;
+  if (carried_ && carried_->epoch == epoch) {
+    if (frame.index <= carried_->index) return nullptr;
+    carried = std::move(*carried_);
+  }
+  carried.epoch = epoch;
+  carried.index = frame.index;
+  carried.cut |= frame.cut;
+  for (const auto& [id, matrix] : frame.objects) carried.objects.insert_or_assign(id, matrix);
+  for (const auto& [id, matrix] : frame.lights) carried.lights.insert_or_assign(id, matrix);
+  carried_ = std::move(carried);
+  const std::shared_ptr<Answer> answer = ledger_.fresh();
+  answer->epoch = epoch;
+  answer->report.index = frame.index;
+  answer->dropped = true;
+  ledger_.keep(answer);
+  return answer;
 }
 
 std::shared_ptr<const Answer> Session::repeat(std::int64_t index, std::uint64_t epoch) {
@@ -71,6 +110,17 @@ std::size_t frame_bytes(const DenoiserConfig& config, int credits) {
   };
   const auto frames = static_cast<std::size_t>(credits);
   return bytes_of(config.planes) * frames + bytes_of(result_planes(config)) * (frames + 1);
+}
+
+std::size_t estimated_denoiser_bytes(const DenoiserConfig& config) {
+  constexpr int kProbeSize = 256;  // pixels; small, but padding is a small part of it
+  DenoiserConfig probe = config;
+  probe.width = std::min(config.width, kProbeSize);
+  probe.height = std::min(config.height, kProbeSize);
+  const double area = static_cast<double>(config.width) * config.height;
+  const double probe_area = static_cast<double>(probe.width) * probe.height;
+  const auto probe_bytes = static_cast<double>(Denoiser(probe).memory_bytes());
+  return static_cast<std::size_t>(probe_bytes * (area / probe_area));
 }
 
 }  // namespace holdfast::server

@@ -20,6 +20,7 @@ struct SessionConfig {
   std::vector<PlaneId> results;  ///< result planes to send, in order
   double budget_ms = 0;          ///< 0 = none
   std::string wire = "exact";
+  bool latest = false;  ///< a frame is dropped if a newer one waits behind it
 };
 
 /// What a session has done so far.
@@ -45,7 +46,11 @@ class Session {
   /// Filters a frame; called from jobs of `strand()` only. A greater epoch than that of the frame
   /// before starts the history anew. Throws InputError for a frame that breaks a rule (history
   /// untouched); any other exception resets the history.
-  std::shared_ptr<const Answer> filter(const Frame& frame, std::uint64_t epoch);
+  /// What dropped frames left for it is added to the frame.
+  std::shared_ptr<const Answer> filter(Frame& frame, std::uint64_t epoch);
+  /// Drops a frame: its cut and transforms are left for the next one. Null if the frame is not
+  /// newer than the last, which `filter` then says. Called from jobs of `strand()` only.
+  std::shared_ptr<const Answer> drop(const Frame& frame, std::uint64_t epoch);
   /// The answer to a frame that was filtered already; null if it was not, or too long ago. Called
   /// from jobs of `strand()` only.
   std::shared_ptr<const Answer> repeat(std::int64_t index, std::uint64_t epoch);
@@ -59,13 +64,23 @@ class Session {
   const std::string& plan_text() const { return plan_text_; }
 
  private:
+  /// What dropped frames said that the next one must know.
+  struct Carried {
+    std::uint64_t epoch = 0;
+    std::int64_t index = 0;  ///< of the last of them
+    TransformTable objects, lights;
+    bool cut = false;
+  };
+
   const std::string id_, token_;
   const SessionConfig config_;
   std::optional<Denoiser> denoiser_;  ///< always there but while it is made anew
   std::size_t denoiser_bytes_;
   std::string plan_text_;
   AnswerLedger ledger_;
-  std::uint64_t epoch_ = 0;  ///< of the history
+  std::optional<Carried> carried_;
+  std::uint64_t epoch_ = 0;                       ///< of the history
+  ResetReason next_reset_ = ResetReason::kFirst;  ///< of the next frame, if its history starts anew
   const std::shared_ptr<Strand> strand_ = std::make_shared<Strand>();
   mutable std::mutex mutex_;
   SessionCounters counters_;
@@ -74,5 +89,10 @@ class Session {
 /// Bytes of the frames of a session that may be in flight at once, and of the answers that are
 /// remembered and made; results count whether or not they are sent back.
 std::size_t frame_bytes(const DenoiserConfig& config, int credits);
+
+/// What Denoiser::memory_bytes will be, or up to a quarter more, without making one of that size:
+/// buffers grow with the padded pixels, so a small one tells the bytes of a pixel. Throws
+/// InputError for a configuration that the core refuses.
+std::size_t estimated_denoiser_bytes(const DenoiserConfig& config);
 
 }  // namespace holdfast::server

@@ -9,14 +9,37 @@
 namespace holdfast::server {
 namespace {
 
+/// google.rpc's QuotaFailure and RetryInfo have no package of their own in our distribution; the
+/// same facts go as trailing metadata.
+void add_quota(grpc::CallbackServerContext& context, std::exception_ptr error) {
+  try {
+    std::rethrow_exception(std::move(error));
+  } catch (const RefusedError& refusal) {
+    const Quota& quota = refusal.quota();
+    if (!quota.limit.empty()) context.AddTrailingMetadata("holdfast-quota", quota.limit);
+    if (quota.retry_after.count() > 0)
+      context.AddTrailingMetadata("holdfast-retry-after-ms",
+                                  std::to_string(quota.retry_after.count()));
+  } catch (...) {  // others have no quota
+  }
+}
+
+std::string authorization(const grpc::CallbackServerContext& context) {
+  const auto& metadata = context.client_metadata();
+  const auto it = metadata.find("authorization");
+  return it == metadata.end() ? "" : std::string(it->second.data(), it->second.size());
+}
+
 /// Runs `work` and ends the call with OK or with the translation of what it threw.
 template <class F>
-grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, F&& work) {
+grpc::ServerUnaryReactor* answer(Metrics& metrics, grpc::CallbackServerContext* context, F&& work) {
   grpc::Status status;
   try {
     work();
   } catch (...) {
     status = status_from(std::current_exception());
+    metrics.refused(std::current_exception());
+    add_quota(*context, std::current_exception());
   }
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
   reactor->Finish(status);
@@ -28,12 +51,12 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, F&& work)
 grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerContext* context,
                                                         const v1::GetServerInfoRequest*,
                                                         v1::GetServerInfoResponse* response) {
-  return answer(context, [&] {
+  return answer(state_.metrics, context, [&] {
     response->set_version(kVersion);
     for (const std::string& name : recipe_names()) response->add_recipes(name);
     for (const std::string& name : preset_names()) response->add_presets(name);
     for (const std::string& name : wire_names()) response->add_wires(name);
-    response->set_max_dimension_px(kMaxDimension);
+    response->set_max_dimension_px(static_cast<std::uint32_t>(state_.config.limits.max_dimension));
     response->set_max_chunk_bytes(wire::kMaxChunkBytes);
     response->set_max_sessions(static_cast<std::uint32_t>(state_.config.limits.max_sessions));
     response->set_sessions(static_cast<std::uint32_t>(state_.sessions.size()));
@@ -44,7 +67,8 @@ grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerContext* context,
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
-  return answer(context, [&] {
+  return answer(state_.metrics, context, [&] {
+    state_.tokens.check(authorization(*context));
     if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
     const auto session = state_.sessions.create(session_config_from(*request));
     const SessionConfig& config = session->config();
@@ -69,7 +93,7 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext* context,
                                                      const v1::GetSessionRequest* request,
                                                      v1::GetSessionResponse* response) {
-  return answer(context, [&] {
+  return answer(state_.metrics, context, [&] {
     const auto session = state_.sessions.find(request->session_id(), request->token());
     const SessionCounters counters = session->counters();
     response->set_streaming(state_.sessions.attached(*session));
@@ -85,8 +109,9 @@ grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* SessionService::DeleteSession(grpc::CallbackServerContext* context,
                                                         const v1::DeleteSessionRequest* request,
                                                         v1::DeleteSessionResponse*) {
-  return answer(context, [&] {
+  return answer(state_.metrics, context, [&] {
     state_.sessions.remove(request->session_id(), request->token());
+    state_.metrics.session_ended("deleted", 1);
     state_.streams.close_session(request->session_id());
     state_.log->info("event=session_delete session={}", request->session_id());
   });

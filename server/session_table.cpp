@@ -1,5 +1,8 @@
 #include "server/session_table.h"
 
+#include <algorithm>
+
+#include "core/frame/error.h"
 #include "server/error.h"
 #include "server/random_token.h"
 
@@ -21,11 +24,18 @@ SessionTable::SessionTable(SessionLimits limits, Clock clock)
 std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
   const std::string id = random_hex(kIdBytes);
   expire();
-  admit(id, frame_bytes(config.denoiser, limits_.credits));
+  const DenoiserConfig& core = config.denoiser;
+  if (std::max(core.width, core.height) > limits_.max_dimension)
+    throw InputError("size of a frame",
+                     "must be at most " + std::to_string(limits_.max_dimension) +
+                         " pixels on each side on this server",
+                     std::to_string(core.width) + "x" + std::to_string(core.height));
+  const std::size_t frames = frame_bytes(core, limits_.credits);
+  admit(id, frames + estimated_denoiser_bytes(core));
   try {
     auto session =
         std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
-    grow(id, session->denoiser_bytes());
+    settle(id, frames + session->denoiser_bytes());
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_.at(id);
     entry.session = session;
@@ -41,31 +51,31 @@ std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
 
 void SessionTable::check_bytes(std::size_t session_bytes, std::size_t total_bytes) const {
   if (session_bytes > limits_.max_session_bytes)
-    throw RefusedError(Refusal::kLimit, "the session needs " + mib(session_bytes) +
-                                            ", but one session may have " +
-                                            mib(limits_.max_session_bytes));
+    throw RefusedError("the session needs " + mib(session_bytes) + ", but one session may have " +
+                           mib(limits_.max_session_bytes),
+                       {"max-session-bytes", {}});
   if (total_bytes > limits_.max_total_bytes)
-    throw RefusedError(Refusal::kLimit, "with this session all would have " + mib(total_bytes) +
-                                            ", but the server allows " +
-                                            mib(limits_.max_total_bytes));
+    throw RefusedError("with this session all would have " + mib(total_bytes) +
+                           ", but the server allows " + mib(limits_.max_total_bytes),
+                       {"max-total-bytes", limits_.linger});
 }
 
 void SessionTable::admit(const std::string& id, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   if (entries_.size() >= limits_.max_sessions)
-    throw RefusedError(Refusal::kLimit, "the server has " + std::to_string(entries_.size()) +
-                                            " sessions, the most it allows");
+    throw RefusedError(
+        "the server has " + std::to_string(entries_.size()) + " sessions, the most it allows",
+        {"max-sessions", limits_.linger});
   check_bytes(bytes, total_bytes_ + bytes);
   entries_.emplace(id, Entry{nullptr, bytes, SessionLife(clock_())});
   total_bytes_ += bytes;
 }
 
-void SessionTable::grow(const std::string& id, std::size_t bytes) {
+void SessionTable::settle(const std::string& id, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_.at(id);
-  check_bytes(entry.bytes + bytes, total_bytes_ + bytes);
-  entry.bytes += bytes;
-  total_bytes_ += bytes;
+  total_bytes_ += bytes - entry.bytes;
+  entry.bytes = bytes;
 }
 
 const SessionTable::Entry& SessionTable::checked(const std::string& id,

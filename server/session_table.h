@@ -22,9 +22,9 @@ class SessionTable {
 
   explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
 
-  /// Makes a session with a random id and token. Its memory is counted before anything of its size
-  /// is allocated. Throws InputError for a bad configuration, RefusedError(kLimit) naming the
-  /// limit.
+  /// Makes a session with a random id and token. Its memory is estimated and admitted before
+  /// anything of its size is allocated, then corrected to what it is. Throws InputError for a bad
+  /// configuration, RefusedError(kLimit) naming the limit.
   std::shared_ptr<Session> create(SessionConfig config);
 
   /// The session. Throws RefusedError(kUnknownSession, kWrongToken).
@@ -62,7 +62,7 @@ class SessionTable {
 
   const Entry& checked(const std::string& id, const std::string& token) const;
   void admit(const std::string& id, std::size_t bytes);
-  void grow(const std::string& id, std::size_t bytes);
+  void settle(const std::string& id, std::size_t bytes);
   void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
 
   const SessionLimits limits_;

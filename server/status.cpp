@@ -23,6 +23,7 @@ grpc::StatusCode code_of(Refusal reason) {
     case Refusal::kTakenOver: return grpc::StatusCode::ABORTED;
     case Refusal::kLimit: return grpc::StatusCode::RESOURCE_EXHAUSTED;
     case Refusal::kDraining: return grpc::StatusCode::UNAVAILABLE;
+    case Refusal::kUnauthenticated: return grpc::StatusCode::UNAUTHENTICATED;
   }
   return grpc::StatusCode::INTERNAL;
 }

@@ -10,7 +10,8 @@ namespace holdfast::server {
 
 /// The one place where exceptions become gRPC statuses: InputError -> INVALID_ARGUMENT with
 /// InputViolation details; RefusedError -> NOT_FOUND, PERMISSION_DENIED, ABORTED,
-/// RESOURCE_EXHAUSTED or UNAVAILABLE; std::bad_alloc -> RESOURCE_EXHAUSTED; others -> INTERNAL.
+/// RESOURCE_EXHAUSTED, UNAVAILABLE or UNAUTHENTICATED; std::bad_alloc -> RESOURCE_EXHAUSTED; others
+/// -> INTERNAL.
 grpc::Status status_from(std::exception_ptr error);
 
 /// The error of one frame inside a stream, from whatever its assembly or its filtering threw.

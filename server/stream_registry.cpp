@@ -1,14 +1,27 @@
 #include "server/stream_registry.h"
 
 #include "server/denoise_stream.h"
+#include "server/error.h"
 
 namespace holdfast::server {
+namespace {
 
-bool StreamRegistry::add(const std::shared_ptr<DenoiseStream>& stream) {
+constexpr std::chrono::milliseconds kRetryStream{1000};
+
+}  // namespace
+
+void StreamRegistry::add(const std::shared_ptr<DenoiseStream>& stream) {
   const std::lock_guard lock(mutex_);
-  if (draining_) return false;
+  if (draining_) throw RefusedError(Refusal::kDraining, "the server is shutting down");
+  if (streams_.size() >= most_)
+    throw RefusedError("the server has " + std::to_string(most_) + " streams, the most it allows",
+                       {"max-streams", kRetryStream});
   streams_[stream.get()] = stream;
-  return true;
+}
+
+std::size_t StreamRegistry::size() const {
+  const std::lock_guard lock(mutex_);
+  return streams_.size();
 }
 
 void StreamRegistry::remove(const DenoiseStream* stream) {
@@ -31,9 +44,9 @@ void StreamRegistry::close_session(const std::string& session_id) {
       stream->close({grpc::StatusCode::NOT_FOUND, "session " + session_id + " was deleted"});
 }
 
-void StreamRegistry::take_over(const std::string& session_id, const DenoiseStream* heir) {
+void StreamRegistry::take_over(const std::string& session_id, SessionLife::Hold hold) {
   for (const auto& stream : all())
-    if (stream.get() != heir && stream->session_id() == session_id) stream->yield();
+    if (stream->session_id() == session_id) stream->yield(hold);
 }
 
 void StreamRegistry::drain(std::chrono::milliseconds deadline) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "server/session_life.h"
+
 namespace holdfast::server {
 
 class DenoiseStream;
@@ -15,21 +17,27 @@ class DenoiseStream;
 /// The open streams, so that a shutdown can drain them and DeleteSession can close one.
 class StreamRegistry {
  public:
-  /// False, and the stream is not added, once `drain` was called.
-  bool add(const std::shared_ptr<DenoiseStream>& stream);
+  /// `most`: streams that may be open at once.
+  explicit StreamRegistry(std::size_t most) : most_(most) {}
+
+  /// Throws RefusedError, and the stream is not added, once `drain` was called (kDraining) or if
+  /// too many are open (kLimit).
+  void add(const std::shared_ptr<DenoiseStream>& stream);
   void remove(const DenoiseStream* stream);
   /// Closes the streams of a session, if it has any.
   void close_session(const std::string& session_id);
-  /// Ends every stream of the session but `heir`, which has taken the session over.
-  void take_over(const std::string& session_id, const DenoiseStream* heir);
+  /// Ends the streams of a session whose holds are older than `hold`.
+  void take_over(const std::string& session_id, SessionLife::Hold hold);
   /// Asks every stream to finish the frames in flight and end; refuses new ones.
   void drain(std::chrono::milliseconds deadline);
   /// Waits until no stream is open; false if some are at the deadline.
   bool wait_empty(std::chrono::milliseconds deadline);
+  std::size_t size() const;
 
  private:
   std::vector<std::shared_ptr<DenoiseStream>> all() const;
 
+  const std::size_t most_;
   mutable std::mutex mutex_;
   std::condition_variable empty_;
   std::map<const DenoiseStream*, std::weak_ptr<DenoiseStream>> streams_;

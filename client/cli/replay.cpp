@@ -50,6 +50,7 @@ client::SessionOptions session_options(const SequenceReader& sequence, const Rep
   session.half_resolution = options.half_resolution;
   session.wire = options.wire;
   session.budget_ms = options.budget_ms;
+  session.reconnect_timeout = std::chrono::milliseconds(options.reconnect_ms);
   session.debug_planes = options.debug;
   for (const std::string& layer : options.layers) {
     const std::optional<PlaneId> id = plane_from_name(layer);

@@ -25,9 +25,10 @@ struct ReplayOptions {
   std::vector<std::string> layers;  ///< result planes to write; empty = all
   std::int64_t first = std::numeric_limits<std::int64_t>::min();  ///< frames with smaller indices
   std::int64_t last = std::numeric_limits<std::int64_t>::max();   ///< or larger ones are left out
-  double fps = 0;      ///< frames submitted a second; 0 = as fast as they are answered
-  bool debug = false;  ///< also motion, history and confidence of each component
-  bool quiet = false;  ///< no progress
+  double fps = 0;            ///< frames submitted a second; 0 = as fast as they are answered
+  int reconnect_ms = 10000;  ///< a lost server is waited for that long
+  bool debug = false;        ///< also motion, history and confidence of each component
+  bool quiet = false;        ///< no progress
 };
 
 /// What happened, for all frames in order.

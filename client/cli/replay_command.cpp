@@ -46,6 +46,10 @@ void add_replay(CLI::App& app) {
   command.add_option("--threads", options.threads, "of the server in this process")
       ->check(CLI::Range(1, 1024))
       ->excludes(server);
+  command
+      .add_option("--reconnect-ms", options.reconnect_ms, "how long a lost server is waited for")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 86400000));
   command.add_flag("--debug", options.debug, "also motion, history and confidence");
   command.add_flag("--quiet", options.quiet, "no progress, no summary");
   command.add_option("--json", args->json, "file for the machine-readable result");

@@ -1,5 +1,8 @@
 #include "client/sdk/channel.h"
 
+#include <fstream>
+#include <sstream>
+
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
@@ -19,9 +22,29 @@ constexpr int kKeepaliveTimeoutMs = 5000;
 constexpr int kFirstBackoffMs = 50;
 constexpr int kLongestBackoffMs = 1000;
 
+std::string file_text(const char* subject, const std::string& file) {
+  if (file.empty()) return {};
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  if (text.str().empty())
+    throw InputError(std::string(subject) + " " + file, "must be a file that can be read",
+                     "missing or empty");
+  return text.str();
+}
+
+std::shared_ptr<grpc::ChannelCredentials> credentials(const TlsFiles& files) {
+  if (files.ca.empty()) return grpc::InsecureChannelCredentials();
+  grpc::SslCredentialsOptions options;
+  options.pem_root_certs = file_text("TLS authorities", files.ca);
+  options.pem_cert_chain = file_text("TLS certificate", files.certificate);
+  options.pem_private_key = file_text("TLS key", files.key);
+  return grpc::SslCredentials(options);
+}
+
 }  // namespace
 
-std::shared_ptr<grpc::Channel> make_channel(const std::string& address) {
+std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
+  const std::string& address = session.address;
   grpc::ChannelArguments args;
   args.SetMaxReceiveMessageSize(wire::kMaxMessageBytes);
   args.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
@@ -37,7 +60,7 @@ std::shared_ptr<grpc::Channel> make_channel(const std::string& address) {
     args.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     args.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, wire::kMaxMessageBytes);
   }
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), args);
+  return grpc::CreateCustomChannel(address, credentials(session.tls), args);
 }
 
 }  // namespace holdfast::client

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include <grpcpp/channel.h>
+#include <holdfast/client.h>
 
 namespace holdfast::client {
 
-/// A channel to a server, with the arguments that large planes need. Not connected yet.
-std::shared_ptr<grpc::Channel> make_channel(const std::string& address);
+/// A channel to a server, with the arguments that large planes need. Not connected yet. Throws
+/// InputError naming a file that cannot be read.
+std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session);
 
 }  // namespace holdfast::client

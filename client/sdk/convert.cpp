@@ -62,6 +62,7 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
   request.set_debug_planes(options.debug_planes);
   request.set_budget_ms(options.budget_ms);
   request.set_wire(options.wire);
+  if (options.late_frames == LateFrames::kLatest) request.set_late_frames(v1::LATE_FRAMES_LATEST);
   for (const PlaneId id : options.results) request.add_result_planes(plane_name(id));
 }
 
@@ -108,6 +109,7 @@ void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
     output.repaired.push_back({repair.plane(), repair.values()});
   output.non_finite_out = result.non_finite_out();
   output.repeated = result.repeated();
+  output.dropped = result.dropped();
 }
 
 void check_planes(const Frame& frame, const std::vector<PlaneId>& planes, int width, int height) {

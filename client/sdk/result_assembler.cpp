@@ -18,7 +18,7 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
   read_frame_result(result, *output_);
   plane_ = 0;
   received_ = 0;
-  if (output_->error) return true;
+  if (output_->error || output_->dropped) return true;
   require(result.planes_size() == static_cast<int>(results_.size()),
           "an answer must announce all result planes");
   output_->planes = std::move(reuse);

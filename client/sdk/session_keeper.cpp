@@ -30,7 +30,7 @@ bool passing(const grpc::Status& status) {
 SessionKeeper::SessionKeeper(const SessionOptions& options, Exchange& exchange)
     : options_(options),
       exchange_(exchange),
-      channel_(make_channel(options.address)),
+      channel_(make_channel(options)),
       sessions_(channel_),
       denoise_(channel_) {
   create(session_);
@@ -73,6 +73,8 @@ void SessionKeeper::create(v1::CreateSessionResponse& session) {
   write_create_request(options_, request);
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + options_.connect_timeout);
+  if (!options_.bearer_token.empty())
+    context.AddMetadata("authorization", "Bearer " + options_.bearer_token);
   check(options_.address, sessions_.CreateSession(&context, request, &session));
   id_ = session.session_id();
   token_ = session.token();

@@ -128,10 +128,25 @@ TEST_F(Replay, EndsWithThreeWhenTheServerStopsInTheMiddle) {
     server.program.wait_for("event=stream_open");
     server.program.kill(SIGTERM);
   });
-  EXPECT_EQ(replay({"--server", server.address, "--fps", "2"}), 3);
+  EXPECT_EQ(replay({"--server", server.address, "--fps", "2", "--reconnect-ms", "0"}), 3);
   stop.join();
   EXPECT_TRUE(said("the server is shutting down")) << text;
   EXPECT_EQ(server.program.wait(), 0);
+}
+
+TEST_F(Replay, GoesOnWithTheServerThatTakesThePlaceOfTheLostOne) {
+  auto server = std::make_unique<ServerProgram>(dir);
+  const std::string address = server->address;
+  std::thread restart([&] {
+    server->program.wait_for("event=stream_open");
+    server->program.kill(SIGKILL);
+    server->program.wait();
+    server = std::make_unique<ServerProgram>(dir);
+  });
+  EXPECT_EQ(replay({"--server", address, "--fps", "4"}), 0) << text;
+  restart.join();
+  for (int i = 3; i < 7; ++i)
+    EXPECT_TRUE(fs::exists(sequence_file(dir / "out", "frame", i))) << "frame " << i;
 }
 
 TEST_F(Replay, EndsWithTwoAndNamesAWrongArgument) {

@@ -145,6 +145,50 @@ TEST_F(Fault, SlowReaderStallsNobodyElse) {
   writer.join();
 }
 
+TEST_F(Fault, ClientFrozenInTheMiddleOfAFrameHoldsUpNeitherOthersNorTheEnd) {
+  ServerProcess server(socket.address(), {"--drain-ms", "300"});
+  Session other = connect();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  RawStream frozen(client);
+  frozen.attach();
+  const auto messages = RawStream::messages(test::small_frame(config, 0), config);
+  frozen.write(messages[0]);
+  frozen.write(messages[1]);
+  for (int i = 0; i < 3; ++i) pass(other, i);
+  const auto start = Clock::now();
+  server.signal(SIGTERM);
+  EXPECT_EQ(server.wait(), 0);
+  EXPECT_LT(seconds_since(start), 3.0) << "the deadline cuts it off";
+}
+
+TEST_F(Fault, CorruptAndWrongLengthChunksFailTheirFrameAlone) {
+  const ServerProcess server(socket.address());
+  connect().close();
+  RawClient client(socket.address());
+  ASSERT_TRUE(client.create(config).ok());
+  RawStream stream(client);
+  stream.attach();
+  const auto error_of = [&](int index, auto damage) {
+    auto messages = RawStream::messages(test::small_frame(config, index), config);
+    damage(*messages[1].mutable_plane_chunk());
+    for (const auto& message : messages) stream.write(message);
+    return stream.read_result().error().message();
+  };
+  const auto nothing = [](v1::PlaneChunk&) {};
+  EXPECT_EQ(error_of(0, nothing), "");
+  EXPECT_NE(error_of(1, [](v1::PlaneChunk& c) { c.set_offset(8); }).find("offset"),
+            std::string::npos);
+  EXPECT_NE(error_of(1, [](v1::PlaneChunk& c) { c.mutable_data()->resize(8); }).find("last"),
+            std::string::npos);
+  EXPECT_NE(error_of(1, [](v1::PlaneChunk& c) { c.mutable_data()->append("12345678"); })
+                .find("must have"),
+            std::string::npos);
+  EXPECT_NE(error_of(1, [](v1::PlaneChunk& c) { c.set_plane(99); }).find("plane number"),
+            std::string::npos);
+  EXPECT_EQ(error_of(1, nothing), "");
+}
+
 TEST_F(Fault, OversizedMessageEndsTheStreamAndTheSessionStays) {
   const ServerProcess server(socket.address());
   connect().close();

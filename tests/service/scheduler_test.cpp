@@ -10,6 +10,8 @@
 namespace holdfast::server {
 namespace {
 
+using namespace std::chrono_literals;
+
 TEST(Scheduler, RunsTheJobsOfAStrandInOrderOnAnyNumberOfThreads) {
   for (const int threads : {1, 2, 8}) {
     std::vector<int> order;  // no mutex: jobs of one strand never overlap
@@ -23,10 +25,62 @@ TEST(Scheduler, RunsTheJobsOfAStrandInOrderOnAnyNumberOfThreads) {
   }
 }
 
+/// A clock that each look at moves on, and jobs as well: only one thread runs them.
+class ManualClock {
+ public:
+  explicit ManualClock(std::chrono::milliseconds step = 0ms) : step_(step) {}
+  Scheduler::Clock now() {
+    return [this] { return time_ += step_; };
+  }
+  void pass(std::chrono::milliseconds time) { time_ += time; }
+
+ private:
+  const std::chrono::milliseconds step_;
+  std::chrono::steady_clock::time_point time_{};
+};
+
+TEST(Scheduler, SharesTheMachineByTimeBetweenLargeAndSmallFrames) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    const auto large = std::make_shared<Strand>(), small = std::make_shared<Strand>();
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    for (int i = 0; i < 3; ++i) scheduler.post(large, [&] { order += 'L', clock.pass(40ms); });
+    for (int i = 0; i < 12; ++i) scheduler.post(small, [&] { order += 's', clock.pass(10ms); });
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "LssssLssssLssss");
+}
+
+TEST(Scheduler, GivesAStrandThatWasIdleNoTimeSavedUp) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    const auto busy = std::make_shared<Strand>(), late = std::make_shared<Strand>();
+    std::latch posted(1), reached(1);
+    for (int i = 0; i < 4; ++i) scheduler.post(busy, [&] { order += 'b', clock.pass(10ms); });
+    scheduler.post(busy, [&] {
+      reached.count_down();
+      posted.wait();
+      clock.pass(10ms);
+    });
+    // `late` comes when `busy` has used 40 ms; it begins there and the two alternate.
+    reached.wait();
+    for (int i = 0; i < 3; ++i) scheduler.post(late, [&] { order += 'l', clock.pass(10ms); });
+    for (int i = 0; i < 2; ++i) scheduler.post(busy, [&] { order += 'b', clock.pass(10ms); });
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "bbbblblbl");
+}
+
 TEST(Scheduler, LetsStrandsTakeTurnsWhateverTheLengthOfTheirQueues) {
   std::vector<char> order;
   {
-    Scheduler scheduler(1);
+    ManualClock clock(1ms);
+    Scheduler scheduler(1, clock.now());
     const auto greedy = std::make_shared<Strand>(), modest = std::make_shared<Strand>();
     std::latch posted(1);
     scheduler.post(greedy, [&] { posted.wait(); });

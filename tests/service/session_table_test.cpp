@@ -127,6 +127,20 @@ TEST(SessionTable, RefusesASessionLargerThanTheLimitBeforeAllocatingIt) {
   EXPECT_EQ(table.total_bytes(), 0u);
 }
 
+TEST(SessionMemory, IsEstimatedWithinAQuarterBeforeAnythingIsAllocated) {
+  for (const std::string& recipe : recipe_names())
+    for (const auto& [width, height] : {std::pair(8, 8), {37, 300}, {640, 360}, {1024, 300}}) {
+      DenoiserConfig config = test::small_config(width, height);
+      config.recipe = recipe;
+      const std::size_t estimate = estimated_denoiser_bytes(config);
+      const std::size_t actual = Denoiser(config).memory_bytes();
+      EXPECT_GE(static_cast<double>(estimate), 0.95 * static_cast<double>(actual))
+          << recipe << width;
+      EXPECT_LE(static_cast<double>(estimate), 1.25 * static_cast<double>(actual))
+          << recipe << width;
+    }
+}
+
 TEST(SessionTable, RefusesWhatExceedsTheMemoryOfAllSessions) {
   SessionLimits limits;
   limits.max_total_bytes = 64u << 20;

@@ -93,6 +93,29 @@ TEST_F(DenoiseCall, GivesASessionToItsNewestStreamAndTellsTheOlderOne) {
   EXPECT_FALSE(result.history_reset());
 }
 
+TEST_F(DenoiseCall, LeavesOneStreamAliveWhenManyTakeASessionOverAtOnce) {
+  constexpr int kStreams = 6;
+  for (int round = 0; round < 5; ++round) {
+    std::vector<std::unique_ptr<RawStream>> streams;
+    for (int i = 0; i < kStreams; ++i) streams.push_back(std::make_unique<RawStream>(client));
+    std::atomic<int> ended{0};
+    std::vector<std::thread> threads;
+    for (auto& stream : streams)
+      threads.emplace_back([&] {
+        stream->hello(client.session.session_id(), client.session.token());
+        while (stream->read().message_case() != v1::DenoiseResponse::MESSAGE_NOT_SET) {
+        }
+        ++ended;
+      });
+    for (int i = 0; i < 1000 && ended < kStreams - 1; ++i) std::this_thread::sleep_for(5ms);
+    std::this_thread::sleep_for(20ms);
+    EXPECT_EQ(ended, kStreams - 1);
+    EXPECT_TRUE(client.get().streaming());
+    for (auto& stream : streams) stream->cancel();
+    for (std::thread& thread : threads) thread.join();
+  }
+}
+
 TEST_F(DenoiseCall, AnswersARepeatedFrameWithTheSameBitsAndFiltersItOnce) {
   const auto answer = [&](RawStream& stream, int index) {
     stream.write(test::small_frame(config, index), config);

@@ -25,6 +25,20 @@ struct RefusedError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Files in PEM form for an encrypted connection.
+struct TlsFiles {
+  std::string ca;  ///< authorities that the server's certificate must come from; empty = no TLS
+  std::string certificate;  ///< our own, if the server asks for one
+  std::string key;          ///< of that
+};
+
+/// What a server does with a frame that waits to be filtered when a newer one has come.
+enum class LateFrames {
+  kAll,     ///< it is filtered
+  kLatest,  ///< it is dropped: answered without planes, and the next one goes on from the one
+            ///< before
+};
+
 /// What is fixed for the life of a session.
 struct SessionOptions {
   std::string address = "127.0.0.1:50051";  ///< host:port or unix:PATH
@@ -34,6 +48,8 @@ struct SessionOptions {
   /// Answered frames that the session holds, to warm the history of a new server with them if the
   /// old one is lost; 0 = none.
   int rewarm_frames = 4;
+  TlsFiles tls;
+  std::string bearer_token;  ///< with which the server admits us; empty = none
 
   int width = 0;                ///< pixels, 1..kMaxDimension
   int height = 0;               ///< pixels, 1..kMaxDimension
@@ -49,6 +65,7 @@ struct SessionOptions {
   double budget_ms = 0;          ///< wished time of a frame in the core; 0 = none
   std::string wire = "exact";    ///< name of the wire profile
   std::vector<PlaneId> results;  ///< result planes to send back; empty = all
+  LateFrames late_frames = LateFrames::kAll;
 };
 
 /// Where the time of a frame went, milliseconds. All but `total` by the server's clock.
@@ -86,6 +103,7 @@ struct FrameOutput {
   std::vector<Repair> repaired;    ///< values that were not finite or out of range, by plane
   std::uint64_t non_finite_out = 0;
   bool history_lost = false;  ///< the server was lost: history was made anew from the last frames
+  bool dropped = false;       ///< by LateFrames::kLatest; then `planes` is empty
   bool repeated = false;      ///< the frame was sent again, and its answer was still known
 };
 
