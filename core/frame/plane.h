@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <new>
 #include <span>
@@ -120,7 +121,7 @@ class PlaneSet {
   /// The plane; throws InputError naming it if it is missing.
   const Plane& at(PlaneId id) const;
   /// Adds a zero-filled plane, or returns the one that is there if the size agrees (else replaces
-  /// it).
+  /// it). References to other planes stay valid.
   Plane& add(PlaneId id, int width, int height);
   void remove(PlaneId id);
   void clear() { planes_.clear(); }
@@ -132,7 +133,7 @@ class PlaneSet {
   auto end() { return planes_.end(); }
 
  private:
-  std::vector<Plane> planes_;
+  std::deque<Plane> planes_;  // so that adding one leaves references to others valid
 };
 
 }  // namespace holdfast
