@@ -6,6 +6,7 @@
 #include "client/cli/json_file.h"
 #include "client/cli/study.h"
 #include "client/cli/study_scenes.h"
+#include "client/cli/study_stability.h"
 #include "client/cli/study_text.h"
 #include "client/cli/study_vectors.h"
 #include "client/measure/claims_text.h"
@@ -20,7 +21,8 @@ struct Arguments {
   QualitySettings quality;
   StudyOptions study;
   std::string size, json, markdown;
-  bool with_quality = false, with_vectors = false, quick = false;
+  bool with_quality = false, with_vectors = false, with_stability = false, quick = false;
+  bool with_long = false, with_large = false;
 };
 
 /// Writes the tables to the file of --markdown, or prints them.
@@ -49,6 +51,17 @@ void run_vectors(const Arguments& arguments) {
   if (!options.quiet) std::fputs(steps_text(steps).c_str(), stderr);
 }
 
+void run_stability(const Arguments& arguments) {
+  bool passed = false;
+  write_tables(arguments, study_stability({.recipes = arguments.study.recipes,
+                                           .with_long = arguments.with_long,
+                                           .with_large = arguments.with_large,
+                                           .quiet = arguments.study.quiet,
+                                           .json = arguments.json},
+                                          passed));
+  if (!passed) throw std::runtime_error("an error is beyond its limit");
+}
+
 void run_quality(Arguments& arguments) {
   QualitySettings& quality = arguments.quality;
   StudyOptions& options = arguments.study;
@@ -75,14 +88,15 @@ void run_quality(Arguments& arguments) {
     std::fprintf(stderr, "%sreport: %s\n", steps_text(study.steps).c_str(), page.c_str());
 }
 
-/// Options that mean nothing to a study of vectors.
-void add_quality_options(CLI::App& command, CLI::Option* with_vectors, QualitySettings& quality,
-                         StudyOptions& study) {
+/// Options that mean nothing to other studies; recipes are nothing to one of vectors alone.
+void add_quality_options(CLI::App& command, CLI::Option* with_vectors, CLI::Option* with_stability,
+                         QualitySettings& quality, StudyOptions& study) {
+  command.add_option("--recipes", study.recipes, "Recipes, comma separated")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->excludes(with_vectors);
   CLI::Option* options[] = {
       command.add_option("--scenes", quality.scenes, "Scenes, comma separated")
-          ->delimiter(',')
-          ->capture_default_str(),
-      command.add_option("--recipes", study.recipes, "Recipes, comma separated")
           ->delimiter(',')
           ->capture_default_str(),
       command.add_option("--frames", quality.frames, "Frames of each scene; \"cut\" always has 80")
@@ -98,7 +112,16 @@ void add_quality_options(CLI::App& command, CLI::Option* with_vectors, QualitySe
       command.add_flag("--reuse", study.reuse, "Keep sequences that are in the folder already"),
       command.add_flag("!--no-flip", study.flip,
                        "Leave out FLIP, which takes most of the comparison")};
-  for (CLI::Option* option : options) option->excludes(with_vectors);
+  for (CLI::Option* option : options) option->excludes(with_vectors)->excludes(with_stability);
+}
+
+void add_stability_options(CLI::App& command, CLI::Option* with_stability, Arguments& arguments) {
+  command.add_flag("--long", arguments.with_long, "Of --stability: a run of 100 000 frames, too")
+      ->needs(with_stability);
+  command
+      .add_flag("--large", arguments.with_large,
+                "Of --stability: an image of 8192x4320, too, which takes 20 GB of memory")
+      ->needs(with_stability);
 }
 
 }  // namespace
@@ -109,16 +132,20 @@ void add_study(CLI::App& app) {
   StudyOptions& study = arguments->study;
   study.recipes = recipe_names();
   CLI::App& command = *app.add_subcommand(
-      "study", "Measure recipes or motion vectors: figures, claims, tables, pictures");
+      "study", "Measure recipes, motion vectors or stability: figures, claims, tables, pictures");
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");
   CLI::Option* with_vectors = subject.add_flag(
       "--vectors", arguments->with_vectors,
       "Motion vectors alone: the frame before without noise, warped by each of them");
+  CLI::Option* with_stability = subject.add_flag(
+      "--stability", arguments->with_stability,
+      "The table of extremes: what is sent, what is expected, how far results are from it");
   command.add_option("-o,--output", study.out,
                      "Folder of everything that is made; of the pictures of --vectors");
-  add_quality_options(command, with_vectors, quality, study);
+  add_quality_options(command, with_vectors, with_stability, quality, study);
+  add_stability_options(command, with_stability, *arguments);
   command.add_option("--size", arguments->size,
                      "WIDTHxHEIGHT in pixels; 480x270, or 240x135 of --vectors, if absent");
   command.add_option("--seed", quality.seed, "Seed of all random numbers")->capture_default_str();
@@ -133,6 +160,8 @@ void add_study(CLI::App& app) {
   command.callback([arguments] {
     if (arguments->with_vectors)
       run_vectors(*arguments);
+    else if (arguments->with_stability)
+      run_stability(*arguments);
     else
       run_quality(*arguments);
   });

@@ -30,7 +30,7 @@ constexpr int kStatisticsStep = 3;  // 9x9 window, tiled exactly
 // own.
 constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
-constexpr float kVarianceFloor = 1e-20f;
+constexpr float kVarianceFloor = 1e-30f;
 
 // How narrow the window of the differences from history is, as a multiple of the precision of the
 // filter's footprint. That of reflections must find what the filter's would blur; that of shadows

@@ -131,7 +131,10 @@ void load_motion(const Plane& motion, Guides& out) {
 }
 
 std::uint64_t load_signal(const Plane& plane, Channels<float>& out) {
-  const float unknown = plane.id().kind == PlaneKind::kVisibility ? 1.0f : 0.0f;
+  const bool visibility = plane.id().kind == PlaneKind::kVisibility;
+  const float unknown = visibility ? 1.0f : 0.0f;
+  const float most = visibility ? kLargestVisibility : kLargestRadiance;
+  const float too_large = visibility ? unknown : kLargestRadiance;
   return count_rows(plane.height(), [&](int y) {
     std::uint64_t repaired = 0;
     for (int c = 0; c < plane.channels(); ++c) {
@@ -139,8 +142,8 @@ std::uint64_t load_signal(const Plane& plane, Channels<float>& out) {
       float* to = out[c].row(y);
       for (int x = 0; x < plane.width(); ++x) {
         const float v = in[x];
-        const bool usable = v >= 0.0f && v <= kLargestRadiance;
-        to[x] = usable ? v : (v > 0.0f && std::isfinite(v) ? kLargestRadiance : unknown);
+        const bool usable = v >= 0.0f && v <= most;
+        to[x] = usable ? v : (v > 0.0f && std::isfinite(v) ? too_large : unknown);
         repaired += usable ? 0 : 1;
       }
     }

@@ -12,6 +12,8 @@ namespace holdfast {
 /// Largest radiance that enters; larger values are repaired to it. Its square is still a float far
 /// from overflow when a window of it is summed.
 inline constexpr float kLargestRadiance = 1e15f;
+/// Largest visibility that enters: a sample's weight beyond that is none.
+inline constexpr float kLargestVisibility = 1e6f;
 
 /// Depth, normals and ids of a frame into `out` (whose view is set by the caller). A depth that is
 /// not finite or not positive is no surface: that is how sky is sent, and only NaN counts as
@@ -26,7 +28,7 @@ std::uint64_t load_roughness(const Plane& roughness, Guides& out);
 void load_motion(const Plane& motion, Guides& out);
 
 /// A component's plane into `out`. Negative or non-finite values become 0 (visibility: 1, nothing
-/// is known to block), too large ones kLargestRadiance.
+/// is known to block), too large ones kLargestRadiance (visibility: 1).
 std::uint64_t load_signal(const Plane& plane, Channels<float>& out);
 
 }  // namespace holdfast

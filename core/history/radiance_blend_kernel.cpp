@@ -68,7 +68,7 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
     const float samples = n[i] > 0.0f ? n[i] : 1.0f, square = square_mean[i];
     // The difference also holds the candidate's own noise.
     const float d_norm2 = norm2(d0[i], d1[i], d2[i]);
-    const float of_difference = max_of(square - d_norm2, 1e-6f * square + 1e-20f);
+    const float of_difference = max_of(square - d_norm2, 1e-6f * square + 1e-30f);
     const float variance = of_difference * samples / (samples + 1.0f);
     const float u = of_difference * spread[i];
     // Joined with the mean of those before: a recursive mean of weight beta, which starts as the

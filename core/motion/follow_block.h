@@ -9,6 +9,8 @@
 namespace holdfast {
 
 inline constexpr int kFollowBlock = 64;  ///< pixels
+/// Sweep of a blocker of which nobody knows where it was: nothing that was seen before is expected.
+inline constexpr float kUnknownSweep = 1e6f;
 
 /// The pixels of a block: where they lie, and their surfaces.
 struct BlockPixels {

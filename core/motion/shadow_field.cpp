@@ -124,6 +124,7 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
   const ObjectMotion<float>& occluder = scene_.object(occluder_slot);
   if (!surface.traceable || !occluder.traceable) {
     std::fill_n(out.found, pixels.count, 0.0f);
+    std::fill_n(out.sweep, pixels.count, kUnknownSweep);
     return;
   }
   float light[3][kFollowBlock], previous[3][kFollowBlock];

@@ -106,7 +106,8 @@ void ActivityMap::mark(int halo, int zone, float tolerance) {
         high = std::max(high, row_high_[at(r, column)]);
       }
       std::uint8_t& narrowest = zone_[at(row, column)];
-      if (high - low > tolerance && narrowest > zone) narrowest = static_cast<std::uint8_t>(zone);
+      if (high - low > tolerance * std::max(high, -low) && narrowest > zone)
+        narrowest = static_cast<std::uint8_t>(zone);
     }
   });
 }

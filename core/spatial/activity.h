@@ -24,7 +24,8 @@ class ActivityMap {
   ActivityMap(int width, int height);
 
   /// Marks the tiles for filters of up to `halo` pixels: active where a signal's values on surfaces
-  /// differ by more than `tolerance` within the tile and the tiles around it that the halo reaches.
+  /// differ by more than `tolerance` times the largest of them within the tile and the tiles around
+  /// it that the halo reaches.
   /// With `around_zero`, a tile whose signals are constant but not 0 is active, too.
   void measure(const Guides& guides, std::span<const ChannelView<const float>> signals, int halo,
                float tolerance, bool around_zero = false) {

@@ -10,7 +10,7 @@
 namespace holdfast {
 namespace {
 
-constexpr float kRestTolerance = 1e-6f;  // absolute; rounding of a constant visibility
+constexpr float kRestTolerance = 1e-6f;  // of the signal; rounding of what is constant
 
 /// Zones of the activity map, one a pass. What the last level of `levels` writes differs from its
 /// input within the reach of all levels; what comes before it must be exact, spread included, as

@@ -28,7 +28,7 @@ HOLDFAST_INLINE void tolerance_kernel_body(const ToleranceRow& a) {
   float* __restrict out = a.out;
   for (int x = 0; x < a.width; ++x)
     out[x] = 1.0f / (a.sigma * __builtin_sqrtf(variance[x] / samples[x]) + 1e-3f * abs_of(mean[x]) +
-                     1e-12f);
+                     1e-20f);
 }
 
 HOLDFAST_INLINE void narrow_kernel_body(const NarrowRow& a) {

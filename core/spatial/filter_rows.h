@@ -15,7 +15,7 @@ struct LuminanceRow {
 };
 void luminance_row(const LuminanceRow& row) noexcept;
 
-/// out = 1 / (sigma sqrt(variance / samples) + 1e-3 |mean| + 1e-12): how many tolerances a unit of
+/// out = 1 / (sigma sqrt(variance / samples) + 1e-3 |mean| + 1e-20): how many tolerances a unit of
 /// luminance is. The second term keeps rounding of a noise-free signal from counting as an edge.
 struct ToleranceRow {
   const float *mean, *variance, *samples;

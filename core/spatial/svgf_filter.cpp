@@ -34,7 +34,8 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
     for (int x = 0; x < width; ++x) {
       const float frames = signal.samples.at(x, y), mean = moment_1.at(x, y);
       float variance = std::max(moment_2.at(x, y) - mean * mean, 0.0f);
-      if (frames < kYoungFrames)
+      // Counts of frames are integers but for rounding, which must not decide.
+      if (frames < kYoungFrames - 0.5f)
         variance = std::max(variance, signal.sample_variance.at(x, y)) * kYoungFrames / frames;
       s.spread[0].at(x, y) = variance;
     }
@@ -49,7 +50,7 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
         const float l = from.luminance_at(x, y);
         s.guide[0].at(x, y) = l;
         s.guide[1].at(x, y) = 1.0f / (kLuminanceSigma * std::sqrt(smooth_variance(variance, x, y)) +
-                                      1e-4f * l + 1e-12f);
+                                      1e-4f * l + 1e-20f);
       }
     });
     FilterRow pass;

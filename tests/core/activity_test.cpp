@@ -71,5 +71,21 @@ TEST(ActivityMap, AroundZeroAConstantIsActive) {
   EXPECT_EQ(map.active_share(), 0.0);
 }
 
+// Dim light is filtered as bright light is.
+TEST(ActivityMap, ValuesDifferByAShareOfTheLargest) {
+  const Guides guides = test::wall(test::orthographic_camera(20, 10), 20, 10);
+  Channels<float> image(20, 10, 1);
+  const ChannelView<const float> signal = image[0];
+  ActivityMap map(20, 10);
+  for (const float scale : {1e-8f, 1.0f, -1.0f, 1e8f}) {
+    test::fill(image[0], scale);
+    image[0].at(3, 3) = scale * (1 + 1e-5f);
+    map.measure(guides, {&signal, 1}, 1, 1e-6f);
+    EXPECT_EQ(map.active_share(), 1.0) << scale;
+    map.measure(guides, {&signal, 1}, 1, 1e-4f);
+    EXPECT_EQ(map.active_share(), 0.0) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace holdfast

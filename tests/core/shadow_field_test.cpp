@@ -1,5 +1,7 @@
 #include "core/motion/shadow_field.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "core/frame/conventions.h"
@@ -128,6 +130,24 @@ TEST(ShadowTracer, BorrowedBlockersMoveWithTheNearestBlockedSample) {
   const glm::dvec2 expected = world.expected(x, y, s + 0.5 * (centre - s), 0.5f, 0.5f);
   EXPECT_NEAR(pixel.x, expected.x, 2e-3);
   EXPECT_NEAR(pixel.y, expected.y, 2e-3);
+}
+
+TEST(ShadowTracer, ABlockerWithoutAPastMayHaveComeFromAnywhere) {
+  World world;
+  world.move();
+  world.blocker_before = glm::dmat4(0);  // no inverse: nobody knows where it was
+  world.move();
+  const int x = 16, y = 16;
+  const BlockPixels pixels(world.guides, x, y, 8);
+  std::vector<float> ratio(kFollowBlock, 0.5f);
+  FollowedBlock out{};
+  const int slot = world.scene.slot_of(2);
+  ASSERT_FALSE(world.scene.object(slot).traceable);
+  world.tracer().follow_block(pixels, x, y, ratio.data(), nullptr, 0, slot, out);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(out.found[i], 0.0f);
+    EXPECT_EQ(out.sweep[i], kUnknownSweep);
+  }
 }
 
 TEST(ShadowTracer, MeasuresNothingWithoutSurfaceBlockerOrLightAbove) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace holdfast::cli {
+
+struct StabilityStudyOptions {
+  std::vector<std::string> recipes;
+  bool with_long = false, with_large = false;
+  bool quiet = false;
+  std::string json;  ///< file; empty: none
+};
+
+/// Measures the table of extremes and returns it as Markdown; `passed` tells whether all rows did.
+std::string study_stability(const StabilityStudyOptions& options, bool& passed);
+
+}  // namespace holdfast::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace holdfast::stability {
+
+/// The recipe that accuracy is promised of. All others are what it is compared with: results must
+/// be finite under them too, but what they get wrong by design (ghosts of what has moved) they may.
+inline constexpr const char* kPromised = "reliable";
+
+/// Of rows that compare noise: a filter that takes none away leaves 1. What is compared may leave
+/// ghosts, but no more than that.
+inline constexpr double kHelps = 1, kGhosts = 3;
+
+/// Limits of an error, by recipe.
+struct Limits {
+  double promised = 0, others = 0;
+
+  Limits(double all) : promised(all), others(all) {}
+  Limits(double of_promised, double of_others) : promised(of_promised), others(of_others) {}
+  double of(const std::string& recipe) const { return recipe == kPromised ? promised : others; }
+};
+
+/// One row of the table of extremes.
+struct Entry {
+  std::string name;      ///< of the row: unique, words joined by '-'
+  std::string input;     ///< what is sent
+  std::string expected;  ///< what a user wants to see; says what `error` is
+  Limits limit;          ///< of the error
+  /// The largest error seen under the recipe of that name, >= 0; infinite where a result is not
+  /// finite. Throws only what the core throws in spite of what is expected.
+  std::function<double(const std::string& recipe)> error;
+  enum class Cost { kSmall, kLong, kLarge } cost = Cost::kSmall;
+};
+
+/// Rows by what is extreme in them.
+std::vector<Entry> scale_entries();
+std::vector<Entry> radiance_entries();
+std::vector<Entry> surface_entries();
+std::vector<Entry> light_entries();
+std::vector<Entry> camera_entries();
+std::vector<Entry> object_entries();
+std::vector<Entry> size_entries();
+std::vector<Entry> time_entries();
+
+}  // namespace holdfast::stability

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "client/stability/entry.h"
+#include "client/stability/outcome.h"
+#include "core/frame/error.h"
+
+namespace holdfast::stability {
+namespace {
+
+World still_world(const std::string& recipe) {
+  World world;
+  world.recipe = recipe;
+  world.still = true;
+  return world;
+}
+
+double rmse(const PlaneSet& a, const PlaneSet& truth) {
+  double sum = 0, count = 0;
+  for (const Plane& mean : truth)
+    for (int c = 0; c < mean.channels(); ++c)
+      for (int y = 0; y < mean.height(); ++y)
+        for (int x = 0; x < mean.width(); ++x, count += 1) {
+          const double d =
+              double{a.at(mean.id()).channel(c).at(x, y)} - double{mean.channel(c).at(x, y)};
+          sum += d * d;
+        }
+  return std::sqrt(sum / count);
+}
+
+/// The error after many frames at rest, over that after 256: history that drifts, or that gives up
+/// what it knows, would make it grow. Means of 32 frames each.
+double drift(const std::string& recipe, int frames) {
+  World world = still_world(recipe);
+  world.width = 9;
+  world.height = 7;
+  const PlaneSet mean = truth(world, 0, 4096);
+  Denoiser denoiser(session_of(world));
+  double early = 0, late = 0;
+  PlaneSet results;
+  for (int t = 0; t < frames; ++t) {
+    if (denoiser.filter(render(world, t), results).non_finite_out > 0) return HUGE_VAL;
+    if (t >= 224 && t < 256) early += rmse(results, mean);
+    if (t >= frames - 32) late += rmse(results, mean);
+  }
+  return late / early;
+}
+
+Entry long_run(const char* name, int frames, Entry::Cost cost) {
+  return {name,
+          std::to_string(frames) + " frames of a scene at rest",
+          "no drift: the error at the end over that after 256 frames",
+          1.2,
+          [=](const std::string& recipe) { return drift(recipe, frames); },
+          cost};
+}
+
+/// Indices with gaps, up to the last that there is, against 0, 1, 2, ...
+double gaps(const std::string& recipe) {
+  World world;
+  world.recipe = recipe;
+  // What is random follows from the index under some recipes: nothing of it is sent here.
+  const Outcome ordinary = filter_world(world);
+  Denoiser denoiser(session_of(world));
+  double worst = 0;
+  const std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t indices[kFrames] = {-9000000000, -3, 0, 1, 50, 51, 9000000000, last};
+  for (int t = 0; t < kFrames; ++t) {
+    Frame frame = render(world, t);
+    frame.index = indices[t];
+    PlaneSet results;
+    const FrameReport report = denoiser.filter(frame, results);
+    if (report.history_reset != ordinary.reports[static_cast<std::size_t>(t)].history_reset)
+      return HUGE_VAL;
+    worst = std::max(worst,
+                     relative_difference(results, ordinary.results[static_cast<std::size_t>(t)]));
+  }
+  return worst;
+}
+
+/// Every frame sent twice: refused by name, and without a trace.
+double repeats(const std::string& recipe) {
+  World world;
+  world.recipe = recipe;
+  const Outcome ordinary = filter_world(world);
+  Denoiser denoiser(session_of(world));
+  double worst = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    PlaneSet results, none;
+    denoiser.filter(render(world, t), results);
+    worst = std::max(worst,
+                     relative_difference(results, ordinary.results[static_cast<std::size_t>(t)]));
+    try {
+      denoiser.filter(render(world, t, 2), none);
+      return HUGE_VAL;
+    } catch (const InputError& error) {
+      if (error.subject() != "frame index" || none.size() != 0) return HUGE_VAL;
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+std::vector<Entry> time_entries() {
+  return {long_run("long-run", 2000, Entry::Cost::kSmall),
+          long_run("very-long-run", 100000, Entry::Cost::kLong),
+          {"index-gaps",
+           "indices from -9e9 to the largest, with gaps",
+           "as with 0, 1, 2, ..., relative to each plane's largest value",
+           {0, 0.5},
+           gaps},
+          {"index-repeats", "each frame twice", "the second refused by name, without a trace", 0,
+           repeats}};
+}
+
+}  // namespace holdfast::stability
