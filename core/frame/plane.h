@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+#include <list>
 #include <memory>
 #include <new>
 #include <span>
@@ -133,7 +133,7 @@ class PlaneSet {
   auto end() { return planes_.end(); }
 
  private:
-  std::deque<Plane> planes_;  // so that adding one leaves references to others valid
+  std::list<Plane> planes_;  // so that adding one leaves references to others valid
 };
 
 }  // namespace holdfast

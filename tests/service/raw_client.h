@@ -55,7 +55,7 @@ class RawClient {
 class RawStream {
  public:
   explicit RawStream(RawClient& client) : client_(client) {
-    context_.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(120));
+    context_.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(240));
     stream_ = client.denoise->Denoise(&context_);
   }
 
