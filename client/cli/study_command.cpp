@@ -120,7 +120,7 @@ void add_stability_options(CLI::App& command, CLI::Option* with_stability, Argum
       ->needs(with_stability);
   command
       .add_flag("--large", arguments.with_large,
-                "Of --stability: an image of 8192x4320, too, which takes 20 GB of memory")
+                "Of --stability: an image of 8192x4320, too, which takes 15 GB of memory")
       ->needs(with_stability);
 }
 

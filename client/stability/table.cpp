@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/denoiser/denoiser.h"
+#include "client/stability/world.h"
 
 namespace holdfast::stability {
 namespace {
@@ -45,6 +45,11 @@ std::vector<Finding> measure_table(const TableOptions& options,
                                    const std::function<void(const std::string&)>& progress) {
   const std::vector<std::string>& recipes =
       options.recipes.empty() ? recipe_names() : options.recipes;
+  for (const std::string& recipe : recipes) {
+    World world;
+    world.recipe = recipe;
+    Denoiser denoiser(session_of(world));  // refuses a name that it does not know
+  }
   std::vector<Finding> findings;
   for (const Entry& entry : all_entries()) {
     if (entry.cost == Entry::Cost::kLong && !options.with_long) continue;

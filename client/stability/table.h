@@ -33,6 +33,7 @@ std::vector<Entry> all_entries();
 Finding measure(const Entry& entry, const std::vector<std::string>& recipes);
 
 /// Measures the rows that the options ask for; `progress` is called with the name of each before.
+/// Throws InputError for an unknown recipe.
 std::vector<Finding> measure_table(const TableOptions& options,
                                    const std::function<void(const std::string&)>& progress);
 

@@ -43,6 +43,28 @@ TEST(Accumulate, SamplesLevelOffAtThoseOfAnExponentialMean) {
   EXPECT_FLOAT_EQ(h.before.samples().at(0, 0), 9.0f);  // (2 - 0.2) / 0.2
 }
 
+TEST(Accumulate, AlphaOfZeroIsThePlainMeanHoweverLong) {
+  StillHistory h(1, 1, 1);
+  accumulate(h.guides, h.noisy, {}, {.alpha = 0.0f}, h.before, h.now, nullptr);
+  for (int k = 1; k < 2000; ++k) {
+    std::swap(h.before, h.now);
+    h.noisy[0].at(0, 0) = static_cast<float>(k % 2);
+    accumulate(h.guides, h.noisy, h.by_surface(), {.alpha = 0.0f}, h.before, h.now, nullptr);
+  }
+  EXPECT_NEAR(h.now.data[0].at(0, 0), 0.5f, 1e-4f);
+  EXPECT_NEAR(h.now.samples().at(0, 0), 2000.0f, 1.0f);
+}
+
+TEST(Accumulate, AlphaOfOneIsTheCurrentFrame) {
+  StillHistory h(2, 1, 1);
+  test::fill(h.before.data[0], 1e15f);
+  test::fill(h.before.samples(), 50.0f);
+  test::fill(h.noisy[0], 0.25f);
+  accumulate(h.guides, h.noisy, h.by_surface(), {.alpha = 1.0f}, h.before, h.now, nullptr);
+  EXPECT_EQ(h.now.data[0].at(1, 0), 0.25f);
+  EXPECT_EQ(h.now.samples().at(1, 0), 1.0f);
+}
+
 TEST(Accumulate, WithoutHistoryTheCurrentFramePasses) {
   StillHistory h(2, 1, 3);
   test::fill(h.before.data[0], 9.0f);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/frame/error.h"
+
 namespace holdfast::stability {
 namespace {
 
@@ -53,6 +55,10 @@ TEST(StabilityTable, FailsARowThatThrowsAndSaysWhat) {
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["entries"][0]["failure"], "out of luck");
   EXPECT_TRUE(json["entries"][0]["errors"]["reliable"].is_null());
+}
+
+TEST(StabilityTable, RefusesAnUnknownRecipe) {
+  EXPECT_THROW(measure_table({.recipes = {"magic"}}, [](const std::string&) {}), InputError);
 }
 
 TEST(StabilityTable, NamesEachRowOnce) {
