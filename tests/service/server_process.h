@@ -12,11 +12,13 @@
 
 namespace holdfast::test {
 
-/// holdfast-server as a process of its own, which a test may kill. HOLDFAST_SERVER is its program.
+extern const char* const kServerProgram;  ///< path of holdfast-server
+
+/// holdfast-server as a process of its own, which a test may kill.
 class ServerProcess {
  public:
   explicit ServerProcess(const std::string& listen, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {HOLDFAST_SERVER, "--listen", listen, "--log-level", "off"});
+    more.insert(more.begin(), {kServerProgram, "--listen", listen, "--log-level", "off"});
     std::vector<char*> arguments;
     for (std::string& argument : more) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
