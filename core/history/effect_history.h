@@ -4,10 +4,11 @@
 
 namespace holdfast {
 
-/// Where each pixel's effect was one frame ago: the shadow of a light, a reflection, or, for a
-/// surface that was hidden, what stands in for it.
+/// Channels of EffectHistory::motion.
 enum EffectMotion { kMotionX, kMotionY, kMotionTrust, kMotionSweep, kMotionChannels };
 
+/// Where each pixel's effect was one frame ago: the shadow of a light, a reflection, or, for a
+/// surface that was hidden, what stands in for it.
 struct EffectHistory {
   Channels<Taps> taps;     ///< history taps along the effect's motion vector; may be none
   Channels<float> motion;  ///< motion_px X and Y, trust 0..1 (TRMV's falloff; else 1), and of

@@ -54,7 +54,7 @@ TEST(LateFrames, SpoilNothingWhenATransformOfOneIsBad) {
 
 TEST(LateFrames, AreDroppedWhileTheServerIsBusyAndTheLatestIsFiltered) {
   const server::Server server(test::server_config(1));
-  const DenoiserConfig large = test::small_config(1200, 900), small = test::small_config();
+  const DenoiserConfig large = test::small_config(2000, 1500), small = test::small_config();
   RawClient busy(server.address());
   ASSERT_TRUE(busy.create(large).ok());
   const Frame second = test::small_frame(large, 1);
@@ -69,7 +69,8 @@ TEST(LateFrames, AreDroppedWhileTheServerIsBusyAndTheLatestIsFiltered) {
   for (int i = 0; i < 3; ++i)
     frames.push_back(std::make_shared<const Frame>(test::small_frame(small, i)));
   stream.write(second, large);
-  stream.read_result();  // of the first: the second is next, and takes some hundred milliseconds
+  stream.read_result();  // of the first: the second is next, and takes far longer than three small
+                         // ones to arrive
   for (const auto& frame : frames) session.submit(frame);
   std::vector<bool> dropped;
   for (int i = 0; i < 3; ++i) {

@@ -7,6 +7,9 @@
 #include "core/frame/error.h"
 
 namespace holdfast::stability {
+
+void PrintTo(const Entry& entry, std::ostream* out) { *out << entry.input; }
+
 namespace {
 
 /// The one that accuracy is promised of, and those that differ most from it.
