@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
 #include "client/sequence/sequence.h"
 #include "core/frame/error.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::measure {
 namespace {
@@ -124,7 +123,7 @@ std::vector<Comparison> compare(const CompareOptions& options) {
   report();
   for (const JudgedFrame frame : frames) {
     const auto references = read_references(sequence, frame, layers, tracks);
-    tbb::parallel_for(std::size_t{0}, options.tests.size(), [&](std::size_t t) {
+    for_each_index(std::size_t{0}, options.tests.size(), std::size_t{1}, [&](std::size_t t) {
       const fs::path file = sequence_file(options.tests[t], "frame", frame.index);
       const PlaneSet planes = read_exr(file, size);
       for (std::size_t i = 0; i < layers.size(); ++i)

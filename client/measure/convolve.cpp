@@ -4,13 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "core/kernels/parallel.h"
 
 namespace holdfast::measure {
 namespace {
-
-constexpr int kRowsPerTask = 16;
 
 /// Pixels of one row that are summed together: their sums stay in registers over all taps.
 constexpr int kBlock = 32;
@@ -47,13 +44,6 @@ void pad_row(const float* in, int width, int radius, Border border, float* padde
   std::fill_n(padded + radius + width, radius, zero ? 0.0f : in[width - 1]);
 }
 
-template <class Row>
-void for_rows(int height, Row row) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, kRowsPerTask), [&](const auto& range) {
-    for (int y = range.begin(); y != range.end(); ++y) row(y);
-  });
-}
-
 }  // namespace
 
 void convolve(const float* in, int width, int height, std::span<const float> row_taps,
@@ -62,7 +52,7 @@ void convolve(const float* in, int width, int height, std::span<const float> row
   const int row_radius = static_cast<int>(row_taps.size() / 2);
   const int column_radius = static_cast<int>(column_taps.size() / 2);
 
-  for_rows(height, [&](int y) {
+  for_each_row(height, [&](int y) {
     std::vector<float> padded(static_cast<std::size_t>(width + 2 * row_radius));
     pad_row(row_at(in, width, y), width, row_radius, border, padded.data());
     std::vector<const float*> rows;
@@ -70,7 +60,7 @@ void convolve(const float* in, int width, int height, std::span<const float> row
     sum_rows(rows, row_taps, width, between.data() + static_cast<std::ptrdiff_t>(y) * width);
   });
   const std::vector<float> zeros(static_cast<std::size_t>(width));
-  for_rows(height, [&](int y) {
+  for_each_row(height, [&](int y) {
     std::vector<const float*> rows;
     for (int source = y - column_radius; source <= y + column_radius; ++source) {
       const bool outside = source < 0 || source >= height;

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "client/measure/convolve.h"
 #include "client/measure/flip_color.h"
 #include "client/measure/flip_exposure.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::measure {
 namespace {
@@ -85,9 +83,7 @@ FeatureTaps make_feature_taps() {
 
 template <class Pixel>
 void for_pixels(std::size_t count, Pixel pixel) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 8192), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) pixel(i);
-  });
+  for_each_index(std::size_t{0}, count, std::size_t{8192}, pixel);
 }
 
 /// Strength of a feature: length of the vector of its detector along x and along y.

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
 #include "client/scenes/path.h"
 #include "client/scenes/pixel_writer.h"
 #include "client/scenes/sampling.h"
 #include "client/scenes/shadow_ray.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -132,7 +131,7 @@ void GradientSamples::finish(const View& then, double now_frame, double then_fra
   const bool camera_rests = camera.at(now_frame) == camera.at(then_frame);
   const glm::dvec3 eye = camera.at(then_frame).translation;
   const std::vector<GradientPlane> planes = add_planes(then, out);
-  tbb::parallel_for(0, size_.height, [&](int y) {
+  for_each_index(0, size_.height, 1, [&](int y) {
     for (int x = 0; x < size_.width; ++x) {
       const Sample& sample = at(kStratum * x, kStratum * y);
       if (!sample.is_surface || !carries[sample.object].was_there) continue;

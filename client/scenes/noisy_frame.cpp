@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include <tbb/parallel_for.h>
-
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
 #include "client/scenes/noise.h"
@@ -12,6 +10,7 @@
 #include "client/scenes/pixel_writer.h"
 #include "client/scenes/sampling.h"
 #include "client/scenes/shadow_ray.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -171,7 +170,7 @@ class NoisyFrame {
 PlaneSet render_noisy(const View& view, int spp, GradientSamples* gradients) {
   PlaneSet planes;
   const NoisyFrame frame(view, spp, gradients, planes);
-  tbb::parallel_for(0, view.height, [&](int y) {
+  for_each_index(0, view.height, 1, [&](int y) {
     for (int x = 0; x < view.width; ++x) frame.render_pixel(x, y);
   });
   return planes;

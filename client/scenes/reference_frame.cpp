@@ -2,13 +2,12 @@
 
 #include <optional>
 
-#include <tbb/parallel_for.h>
-
 #include "client/scenes/glossy.h"
 #include "client/scenes/light_target.h"
 #include "client/scenes/pixel_writer.h"
 #include "client/scenes/reference_radiance.h"
 #include "client/scenes/reference_visibility.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::scenes {
 
@@ -32,7 +31,7 @@ PlaneSet render_reference(const View& view, int spp) {
 
   std::optional<ReferenceRadiance> radiance;
   if (wanted.glossy || wanted.indirect) radiance.emplace(view, spp);
-  tbb::parallel_for(0, view.height, [&](int y) {
+  for_each_index(0, view.height, 1, [&](int y) {
     for (int x = 0; x < view.width; ++x) {
       const auto primary = primary_at(view, x, y);
       if (!primary) {

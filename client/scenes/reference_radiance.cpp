@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tbb/parallel_for.h>
-
 #include "client/scenes/glossy.h"
 #include "client/scenes/path.h"
 #include "client/scenes/sampling.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -67,7 +66,7 @@ void ReferenceRadiance::fill_cache() {
   std::vector<std::vector<CacheSample>> rows(kRowsAtOnce);
   for (int top = 0; top < view_.height; top += kRowsAtOnce) {
     const int end = std::min(view_.height, top + kRowsAtOnce);
-    tbb::parallel_for(top, end, [&](int y) {
+    for_each_index(top, end, 1, [&](int y) {
       std::vector<CacheSample>& row = rows[static_cast<std::size_t>(y - top)];
       row.clear();
       for (int x = 0; x < view_.width; ++x) {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
 #include "client/scenes/light_batch.h"
 #include "client/scenes/light_target.h"
 #include "client/scenes/sampling.h"
 #include "client/scenes/shadow_ray.h"
+#include "core/kernels/parallel.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -82,14 +81,14 @@ void render_reference_visibility(const View& view, std::size_t light, int spp,
   // A multiple of 4, so that the square divides into batches.
   const int side = (strata_side(spp) + 3) / 4 * 4;
   const auto everywhere = [](int, int) { return true; };
-  tbb::parallel_for(0, view.height,
-                    [&](int y) { render_row(view, light, kProbeSide, y, out, everywhere); });
+  for_each_index(0, view.height, 1,
+                 [&](int y) { render_row(view, light, kProbeSide, y, out, everywhere); });
   if (side <= kProbeSide || view.lights[light].is_delta()) return;
   Channels<float> probe(view.width, view.height, 1);
   for (int y = 0; y < view.height; ++y) std::copy_n(out.row(y), view.width, probe[0].row(y));
   const ChannelView<const float> settled = probe[0];
   const auto open = [&](int x, int y) { return !is_settled(settled, x, y); };
-  tbb::parallel_for(0, view.height, [&](int y) { render_row(view, light, side, y, out, open); });
+  for_each_index(0, view.height, 1, [&](int y) { render_row(view, light, side, y, out, open); });
 }
 
 }  // namespace holdfast::scenes

@@ -78,7 +78,7 @@ void ActivityMap::measure(const Guides& guides, std::span<const ChannelView<cons
 
 void ActivityMap::measure_ranges(const Guides& guides, ChannelView<const float> signal,
                                  bool around_zero) {
-  tbb::parallel_for(0, rows_, [&](int row) {
+  for_each_index(0, rows_, 1, [&](int row) {
     tile_ranges({guides.depth(), signal, row * kTileHeight,
                  std::min((row + 1) * kTileHeight, signal.height), around_zero ? 0.0f : kInfinity,
                  around_zero ? 0.0f : -kInfinity, &low_[at(row, 0)], &high_[at(row, 0)]});
@@ -87,7 +87,7 @@ void ActivityMap::measure_ranges(const Guides& guides, ChannelView<const float> 
 
 void ActivityMap::mark(int halo, int zone, float tolerance) {
   const int reach_x = tiles(halo, kTileWidth), reach_y = tiles(halo, kTileHeight);
-  tbb::parallel_for(0, rows_, [&](int row) {
+  for_each_index(0, rows_, 1, [&](int row) {
     for (int column = 0; column < columns_; ++column) {
       const int first = std::max(column - reach_x, 0);
       const int last = std::min(column + reach_x, columns_ - 1);
@@ -97,7 +97,7 @@ void ActivityMap::mark(int halo, int zone, float tolerance) {
           *std::max_element(&high_[at(row, first)], &high_[at(row, last)] + 1);
     }
   });
-  tbb::parallel_for(0, rows_, [&](int row) {
+  for_each_index(0, rows_, 1, [&](int row) {
     const int first = std::max(row - reach_y, 0), last = std::min(row + reach_y, rows_ - 1);
     for (int column = 0; column < columns_; ++column) {
       float low = kInfinity, high = -kInfinity;
