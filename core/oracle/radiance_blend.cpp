@@ -74,7 +74,10 @@ Promise promise_of(const Candidate& candidate, const Taps& taps, const History& 
   const double n = out.samples > 0 ? out.samples : 1;
   const Colour d = colour_at(candidate.means.values, x, y);
   const double square_mean = candidate.means.values.at(x, y, 3);
-  const double of_difference = std::max(square_mean - glm::dot(d, d), 1e-6 * square_mean + 1e-30);
+  const Colour h = colour_at(candidate.value, x, y);
+  const double rounding = 1e-10 * glm::dot(h, h);
+  const double of_difference =
+      std::max(square_mean - glm::dot(d, d), 1e-6 * square_mean + rounding + 1e-30);
   out.variance = of_difference * n / (n + 1);
   const double u = of_difference * candidate.means.spread.at(x, y);
   // The lasting difference: a recursive mean that starts as the plain mean.

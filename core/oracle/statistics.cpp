@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kStep = 3;  // 9x9 pixels
 constexpr int kField = 2;
+constexpr double kLeastShare = 1e-3;  // of samples that say something, below which they fade
 
 /// A window whose samples agree still gets a variance.
 double variance_floor(bool visibility, double mean) {
@@ -41,7 +42,7 @@ Statistics measure(const Surfaces& now, const Image& noisy, const Image& field) 
     out.ratio.at(x, y) = means.at(x, y, kField + kFieldRatio);
     for (int c = 0; c < 3; ++c)
       out.footprint.at(x, y, c) =
-          valid > 0 ? means.at(x, y, kField + kFieldPrecision + c) / valid : 0.0;
+          means.at(x, y, kField + kFieldPrecision + c) / std::max(valid, kLeastShare);
   });
   return out;
 }
