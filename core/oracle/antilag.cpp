@@ -10,6 +10,7 @@ namespace holdfast::oracle {
 namespace {
 
 constexpr double kLargest = double{1e15f};
+constexpr double kLeastValid = 1e-3;  // share of samples nearby, below which lambda fades
 
 /// The surfaces of the strata's middle pixels, as a camera of a third of the resolution sees them.
 Surfaces strata_of(const Surfaces& now, int width, int height) {
@@ -31,9 +32,9 @@ Surfaces strata_of(const Surfaces& now, int width, int height) {
   return strata;
 }
 
-/// now - then, and the larger of both; 0 where that is no sample.
+/// now - then, the larger of both, and 1; 0 where that is no sample.
 Image samples_of(const Plane& plane, std::uint64_t& repaired) {
-  Image out(plane.width(), plane.height(), 2);
+  Image out(plane.width(), plane.height(), 3);
   for_each_pixel(out.width(), out.height(), [&](int x, int y) {
     const double now = double{plane.channel(0).at(x, y)}, then = double{plane.channel(1).at(x, y)};
     bool usable = true;
@@ -44,6 +45,7 @@ Image samples_of(const Plane& plane, std::uint64_t& repaired) {
     if (!usable) return;
     out.at(x, y, 0) = std::min(now, kLargest) - std::min(then, kLargest);
     out.at(x, y, 1) = std::min(std::max(now, then), kLargest);
+    out.at(x, y, 2) = out.at(x, y, 1) > 0 ? 1 : 0;
   });
   return out;
 }
@@ -59,7 +61,8 @@ Image antilag_of(const Surfaces& now, const Plane& gradients, int levels, std::u
   Image out(samples.width(), samples.height(), 1);
   for_each_pixel(out.width(), out.height(), [&](int x, int y) {
     const double delta = std::abs(samples.at(x, y, 0)), largest = samples.at(x, y, 1);
-    out.at(x, y) = largest > 0 ? std::min(delta / largest, 1.0) : 0.0;
+    const double known = std::min(samples.at(x, y, 2) / kLeastValid, 1.0);
+    out.at(x, y) = largest > 0 ? known * std::min(delta / largest, 1.0) : 0.0;
   });
   return out;
 }
