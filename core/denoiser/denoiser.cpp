@@ -79,22 +79,22 @@ class Denoiser::Impl {
     scene.advance(frame, config.width, config.height, config.lights);  // the last that can throw
 
     FrameReport report;
+    StageTimer timer(report.stages);
     report.index = last_index = frame.index;
     has_past = has_past && !frame.cut && plan.history;
     report.history_reset = !has_past;
     if (oracle) {
       for (const PlaneId id : announced) results.add(id, config.width, config.height);
-      oracle->filter(frame, has_past, results, report);
+      oracle->filter(frame, has_past, results, report, timer);
     } else {
-      run_kernels(frame, results, report);
+      run_kernels(frame, results, report, timer);
     }
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return report;
   }
 
-  void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report) {
-    StageTimer timer(report.stages);
+  void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report, StageTimer& timer) {
     now = 1 - now;
     load_guides(frame, report);
     timer.end("guides", 10);

@@ -53,9 +53,8 @@ Surfaces FrameOracle::load(const Frame& frame, FrameReport& report) const {
   return out;
 }
 
-void FrameOracle::filter(const Frame& frame, bool has_past, PlaneSet& results,
-                         FrameReport& report) {
-  StageTimer timer(report.stages);
+void FrameOracle::filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report,
+                         StageTimer& timer) {
   scene_.advance(frame, config_.width, config_.height);
   Surfaces now = load(frame, report);
   timer.end("guides", 0);

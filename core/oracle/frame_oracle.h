@@ -17,8 +17,9 @@ class FrameOracle {
   FrameOracle(const DenoiserConfig& config, const Plan& plan);
 
   /// Filters one checked frame into `results`, whose planes are there. `has_past`: history of the
-  /// frame before is to be used. Adds stages, repairs, changes and counts to `report`.
-  void filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report);
+  /// frame before is to be used. Adds repairs, changes and counts to `report`.
+  void filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report,
+              StageTimer& timer);
 
   /// Held between frames.
   std::size_t bytes() const;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLargestRadiance = double{1e15f};
 constexpr double kLargestVisibility = double{1e6f};
+constexpr double kShortestNormal = double{1e-18f}, kLongestNormal = double{1e18f};
 
 void load_depth(const Plane& plane, Surfaces& out, std::uint64_t& repaired) {
   out.depth = Image(out.width, out.height, 1);
@@ -26,7 +27,7 @@ void load_normals(const Plane& plane, Surfaces& out, std::uint64_t& repaired) {
     glm::dvec3 normal(plane.channel(0).at(x, y), plane.channel(1).at(x, y),
                       plane.channel(2).at(x, y));
     const double length = glm::length(normal);
-    const bool usable = length > 0 && std::isfinite(length);
+    const bool usable = length >= kShortestNormal && length <= kLongestNormal;
     if (!usable) ++repaired;
     normal = usable ? normal / length : towards;
     for (int axis = 0; axis < 3; ++axis) out.normal.at(x, y, axis) = normal[axis];

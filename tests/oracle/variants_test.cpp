@@ -1,7 +1,8 @@
 // The same frames under every instruction set, number of threads, kind of light and choice of a
 // preset, against the oracle.
 
-#include <oneapi/tbb/task_arena.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "core/denoiser/plan.h"
 #include "core/oracle/frame_oracle.h"
@@ -21,6 +22,7 @@ OracleScene moving_scene(int width, int height, int frames) {
 
 TEST(Variants, EveryInstructionSetAndNumberOfThreadsAgreesWithTheOracle) {
   const test::IsaGuard guard;
+  const tbb::global_control most(tbb::global_control::max_allowed_parallelism, 4);
   OracleScene scene = moving_scene(64, 48, 4);
   for (const char* recipe : kRecipes) {
     scene.config.recipe = recipe;
@@ -57,7 +59,8 @@ Results by_plan(const DenoiserConfig& given, const std::vector<Frame>& frames) {
   Results results(frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
     FrameReport report;
-    oracle.filter(frames[k], k > 0 && plan.history, results[k], report);
+    StageTimer timer(report.stages);
+    oracle.filter(frames[k], k > 0 && plan.history, results[k], report, timer);
   }
   return results;
 }
