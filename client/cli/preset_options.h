@@ -11,7 +11,10 @@ namespace holdfast::cli {
 /// What they name is checked by the core, whose errors name what is accepted.
 inline void add_preset_options(CLI::App& command, std::string& preset, std::string& indirect_basis,
                                std::vector<std::string>& half_resolution) {
-  command.add_option("--preset", preset, "fast, balanced or accurate")->capture_default_str();
+  command
+      .add_option("--preset", preset,
+                  "fast, balanced, accurate or reference (double precision, slow)")
+      ->capture_default_str();
   command.add_option("--indirect-basis", indirect_basis,
                      "irradiance, luminance-cones or cones; default: the preset's");
   command

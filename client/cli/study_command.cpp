@@ -21,8 +21,13 @@ struct Arguments {
   QualitySettings quality;
   StudyOptions study;
   std::string size, json, markdown;
-  bool with_quality = false, with_vectors = false, with_stability = false, quick = false;
+  bool with_quality = false, with_vectors = false, with_stability = false, with_oracle = false,
+       quick = false;
   bool with_long = false, with_large = false;
+
+  StabilityStudyOptions of_stability() const {
+    return {study.recipes, with_long, with_large, study.quiet, json};
+  }
 };
 
 /// Writes the tables to the file of --markdown, or prints them.
@@ -51,14 +56,11 @@ void run_vectors(const Arguments& arguments) {
   if (!options.quiet) std::fputs(steps_text(steps).c_str(), stderr);
 }
 
+/// Of --stability and --oracle, which both hold errors against limits.
 void run_stability(const Arguments& arguments) {
   bool passed = false;
-  write_tables(arguments, study_stability({.recipes = arguments.study.recipes,
-                                           .with_long = arguments.with_long,
-                                           .with_large = arguments.with_large,
-                                           .quiet = arguments.study.quiet,
-                                           .json = arguments.json},
-                                          passed));
+  const auto study = arguments.with_oracle ? study_oracle : study_stability;
+  write_tables(arguments, study(arguments.of_stability(), passed));
   if (!passed) throw std::runtime_error("an error is beyond its limit");
 }
 
@@ -90,7 +92,7 @@ void run_quality(Arguments& arguments) {
 
 /// Options that mean nothing to other studies; recipes are nothing to one of vectors alone.
 void add_quality_options(CLI::App& command, CLI::Option* with_vectors, CLI::Option* with_stability,
-                         QualitySettings& quality, StudyOptions& study) {
+                         CLI::Option* with_oracle, QualitySettings& quality, StudyOptions& study) {
   command.add_option("--recipes", study.recipes, "Recipes, comma separated")
       ->delimiter(',')
       ->capture_default_str()
@@ -112,7 +114,8 @@ void add_quality_options(CLI::App& command, CLI::Option* with_vectors, CLI::Opti
       command.add_flag("--reuse", study.reuse, "Keep sequences that are in the folder already"),
       command.add_flag("!--no-flip", study.flip,
                        "Leave out FLIP, which takes most of the comparison")};
-  for (CLI::Option* option : options) option->excludes(with_vectors)->excludes(with_stability);
+  for (CLI::Option* option : options)
+    option->excludes(with_vectors)->excludes(with_stability)->excludes(with_oracle);
 }
 
 void add_stability_options(CLI::App& command, CLI::Option* with_stability, Arguments& arguments) {
@@ -132,7 +135,8 @@ void add_study(CLI::App& app) {
   StudyOptions& study = arguments->study;
   study.recipes = recipe_names();
   CLI::App& command = *app.add_subcommand(
-      "study", "Measure recipes, motion vectors or stability: figures, claims, tables, pictures");
+      "study",
+      "Measure recipes, motion vectors, stability or rounding: figures, claims, tables, pictures");
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");
@@ -142,9 +146,12 @@ void add_study(CLI::App& app) {
   CLI::Option* with_stability = subject.add_flag(
       "--stability", arguments->with_stability,
       "The table of extremes: what is sent, what is expected, how far results are from it");
+  CLI::Option* with_oracle = subject.add_flag(
+      "--oracle", arguments->with_oracle,
+      "How far the kernels are, stage by stage, from the same frames in double precision");
   command.add_option("-o,--output", study.out,
                      "Folder of everything that is made; of the pictures of --vectors");
-  add_quality_options(command, with_vectors, with_stability, quality, study);
+  add_quality_options(command, with_vectors, with_stability, with_oracle, quality, study);
   add_stability_options(command, with_stability, *arguments);
   command.add_option("--size", arguments->size,
                      "WIDTHxHEIGHT in pixels; 480x270, or 240x135 of --vectors, if absent");
@@ -160,7 +167,7 @@ void add_study(CLI::App& app) {
   command.callback([arguments] {
     if (arguments->with_vectors)
       run_vectors(*arguments);
-    else if (arguments->with_stability)
+    else if (arguments->with_stability || arguments->with_oracle)
       run_stability(*arguments);
     else
       run_quality(*arguments);

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "client/cli/json_file.h"
+#include "client/stability/oracle_study.h"
 #include "client/stability/table.h"
 
 namespace holdfast::cli {
@@ -18,6 +19,15 @@ std::string study_stability(const StabilityStudyOptions& options, bool& passed) 
   if (!options.json.empty()) write_json_file(options.json, stability::stability_json(findings));
   passed = stability::all_passed(findings);
   return stability::stability_markdown(findings);
+}
+
+std::string study_oracle(const StabilityStudyOptions& options, bool& passed) {
+  const auto findings = stability::study_oracle(options.recipes, [&](const std::string& recipe) {
+    if (!options.quiet) std::fprintf(stderr, "%s\n", recipe.c_str());
+  });
+  if (!options.json.empty()) write_json_file(options.json, stability::oracle_json(findings));
+  passed = stability::all_within_budget(findings);
+  return stability::oracle_markdown(findings);
 }
 
 }  // namespace holdfast::cli

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
@@ -16,6 +17,7 @@
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
+#include "core/oracle/frame_oracle.h"
 
 namespace holdfast {
 namespace {
@@ -42,8 +44,13 @@ class Denoiser::Impl {
   explicit Impl(const DenoiserConfig& c)
       : config(c),
         plan(Plan::make(c)),
-        scratch(c.width, c.height, plan, plan.full, c.debug_planes) {
+        scratch(c.width, c.height, plan, plan.preset.oracle ? Plan::Grid{} : plan.full,
+                c.debug_planes) {
     announced = result_planes(c);
+    if (plan.preset.oracle) {
+      oracle.emplace(config, plan);
+      return;
+    }
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) {
       g = Guides(c.width, c.height);
@@ -76,6 +83,18 @@ class Denoiser::Impl {
     report.index = last_index = frame.index;
     has_past = has_past && !frame.cut && plan.history;
     report.history_reset = !has_past;
+    if (oracle) {
+      for (const PlaneId id : announced) results.add(id, config.width, config.height);
+      oracle->filter(frame, has_past, results, report, timer);
+    } else {
+      run_kernels(frame, results, report, timer);
+    }
+    has_past = true;
+    report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return report;
+  }
+
+  void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report, StageTimer& timer) {
     now = 1 - now;
     load_guides(frame, report);
     timer.end("guides", 10);
@@ -100,9 +119,6 @@ class Denoiser::Impl {
     }
     report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
     timer.end("composite", composite_channels(frame.planes));
-    has_past = true;
-    report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    return report;
   }
 
   void load_guides(const Frame& frame, FrameReport& report) {
@@ -212,7 +228,8 @@ class Denoiser::Impl {
   int now = 0;  ///< index of the current frame's guides
   SurfaceHistory surface;
   HalfFrame half;
-  ConeSamples cone_samples{};  ///< of the component at hand
+  std::optional<oracle::FrameOracle> oracle;  ///< in place of all that, with preset `reference`
+  ConeSamples cone_samples{};                 ///< of the component at hand
   SceneMotion scene;
   PlaneSet shaded;  ///< unshadowed light of `plan.shaded_lights`
   std::vector<ComponentFilter> filters;
@@ -239,6 +256,7 @@ std::size_t Denoiser::memory_bytes() const {
   std::size_t sum =
       impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
   sum += impl_->half.bytes();
+  if (impl_->oracle) sum += impl_->oracle->bytes();
   for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
   for (const Plane& plane : impl_->shaded) sum += plane.bytes();

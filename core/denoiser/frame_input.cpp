@@ -61,7 +61,8 @@ HOLDFAST_INLINE void normal_row_body(const NormalRow& a) {
   int repaired = 0;
   for (int x = 0; x < a.width; ++x) {
     const float length = __builtin_sqrtf(nx[x] * nx[x] + ny[x] * ny[x] + nz[x] * nz[x]);
-    const bool surface = depth[x] > 0.0f, usable = length > 0.0f && length <= kMost;
+    const bool surface = depth[x] > 0.0f;
+    const bool usable = length >= kShortestNormal && length <= kLongestNormal;
     const float scale = 1.0f / (usable ? length : 1.0f);
     repaired += surface && !usable ? 1 : 0;
     const float ux = usable ? nx[x] * scale : tx;

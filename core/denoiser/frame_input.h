@@ -15,9 +15,12 @@ inline constexpr float kLargestRadiance = 1e15f;
 /// Largest visibility that enters: a sample's weight beyond that is none.
 inline constexpr float kLargestVisibility = 1e6f;
 
+inline constexpr float kShortestNormal = 1e-18f, kLongestNormal = 1e18f;
+
 /// Depth, normals and ids of a frame into `out` (whose view is set by the caller). A depth that is
 /// not finite or not positive is no surface: that is how sky is sent, and only NaN counts as
-/// repaired. A normal that is not finite or of zero length is repaired to face the camera.
+/// repaired. A normal that is not finite or of no length (1e-18..1e18, so that its square is a
+/// float) is repaired to face the camera.
 std::uint64_t load_depth(const Plane& depth, Guides& out);
 std::uint64_t load_normals(const Plane& normal, Guides& out);
 void load_ids(const Plane* ids, Channels<std::uint32_t>& out);

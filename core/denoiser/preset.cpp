@@ -18,7 +18,8 @@ std::vector<Preset> make_presets() {
                     .half_glossy = true};
   const Preset balanced{.name = "balanced"};
   const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
-  return {fast, balanced, accurate};
+  const Preset reference{.name = "reference", .oracle = true};
+  return {fast, balanced, accurate, reference};
 }
 
 const Preset& preset_of_name(const std::string& name) {

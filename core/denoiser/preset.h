@@ -17,9 +17,11 @@ struct Preset {
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;  ///< indirect light is filtered at half resolution
   bool half_glossy = false;    ///< reflections likewise
+  bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow
 };
 
-/// All presets, fastest first.
+/// All presets, fastest first; `reference` last, which is no choice of quality but what the others
+/// are measured against.
 const std::vector<Preset>& all_presets();
 
 /// The preset of `config`, with what `config` chooses itself in place of it. Throws InputError for

@@ -16,6 +16,12 @@ constexpr PlaneId kAnyGradient{PlaneKind::kGradient, {}};
 // Channels of samples.
 constexpr int kDelta = 0;
 constexpr int kLargest = 1;
+constexpr int kValid = 2;
+constexpr int kChannels = 3;
+
+// Share of valid samples nearby below which lambda fades: what is left is the faint weight of
+// samples of other surfaces, which rounding may take for nothing.
+constexpr float kLeastValid = 1e-3f;
 
 /// The guides of each stratum's middle pixel, as a camera of a third of the resolution sees them.
 void fill_guides(const Guides& now, Guides& strata) {
@@ -42,8 +48,8 @@ void fill_guides(const Guides& now, Guides& strata) {
 GradientScratch::GradientScratch(int frame_width, int frame_height) {
   const auto [width, height] = plane_size(kAnyGradient, frame_width, frame_height);
   guides = Guides(width, height);
-  samples = Channels<float>(width, height, 2);
-  filtered = Channels<float>(width, height, 2);
+  samples = Channels<float>(width, height, kChannels);
+  filtered = Channels<float>(width, height, kChannels);
   spread = Channels<float>(width, height, 2);
   antilag = Channels<float>(width, height, 1);
 }
@@ -67,7 +73,9 @@ std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch&
         in_row += given[c] >= 0.0f && given[c] <= largest ? 0 : 1;
       }
       scratch.samples[kDelta].at(x, y) = is_sample ? used[0] - used[1] : 0.0f;
-      scratch.samples[kLargest].at(x, y) = is_sample ? std::max(used[0], used[1]) : 0.0f;
+      const float larger = is_sample ? std::max(used[0], used[1]) : 0.0f;
+      scratch.samples[kLargest].at(x, y) = larger;
+      scratch.samples[kValid].at(x, y) = larger > 0.0f ? 1.0f : 0.0f;
     }
     if (in_row > 0) repaired += in_row;
   });
@@ -79,13 +87,13 @@ ChannelView<const float> antilag_of_gradients(const Guides& now, int levels, Gra
   FilterRow pass;
   pass.guides = &s.guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
-  pass.channels = 2;
+  pass.channels = kChannels;
   pass.spread = Spread::kVariance;
   pass.spread_in = std::as_const(s.spread)[0];
   pass.spread_out = s.spread[1];
   for (int level = 0; level < levels; ++level) {
     pass.step = 1 << level;
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < kChannels; ++c) {
       pass.in[c] = std::as_const(level % 2 == 0 ? s.samples : s.filtered)[c];
       pass.out[c] = (level % 2 == 0 ? s.filtered : s.samples)[c];
     }
@@ -95,7 +103,8 @@ ChannelView<const float> antilag_of_gradients(const Guides& now, int levels, Gra
   for_each_row(s.antilag.height(), [&](int y) {
     for (int x = 0; x < s.antilag.width(); ++x) {
       const float delta = std::abs(last[kDelta].at(x, y)), scale = last[kLargest].at(x, y);
-      s.antilag[0].at(x, y) = scale > 0.0f ? std::min(delta / scale, 1.0f) : 0.0f;
+      const float known = std::min(last[kValid].at(x, y) / kLeastValid, 1.0f);
+      s.antilag[0].at(x, y) = scale > 0.0f ? known * std::min(delta / scale, 1.0f) : 0.0f;
     }
   });
   return std::as_const(s.antilag)[0];

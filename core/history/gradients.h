@@ -10,8 +10,9 @@ namespace holdfast {
 /// Scratch of gradient samples: images with one pixel for each stratum of 3x3 pixels.
 struct GradientScratch {
   Guides guides;             ///< of the strata's middle pixels
-  Channels<float> samples;   ///< of one component: delta = now - then, Delta = max(now, then)
-  Channels<float> filtered;  ///< 2: the same between passes
+  Channels<float> samples;   ///< of one component: delta = now - then, Delta = max(now, then), and
+                             ///< 1 where that is a sample
+  Channels<float> filtered;  ///< 3: the same between passes
   Channels<float> spread;    ///< 2: not used, but written by the filter
   Channels<float> antilag;   ///< 1: the result
 
@@ -28,7 +29,8 @@ std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch&
 /// How much faster than usual history must be replaced because the light changes (A-SVGF, Schied et
 /// al. 2018): with delta and Delta of `scratch.samples` filtered by `levels` passes of a 3x3
 /// a-trous filter that stays on a surface,
-///   lambda = min(1, |delta| / Delta), 0 where Delta is 0.
+///   lambda = min(1, |delta| / Delta), 0 where Delta is 0, and less where less than a thousandth of
+/// the samples nearby are any.
 /// Returns lambda, one value for each stratum, in `scratch.antilag`. More levels bring less noise,
 /// but dilute what changes in a narrow strip, such as the edge of a shadow.
 ///   reads guides, samples | writes antilag | halo 2^levels - 1 strata

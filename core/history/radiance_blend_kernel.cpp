@@ -8,8 +8,9 @@ namespace holdfast {
 namespace {
 
 constexpr int kStep = RadianceBlendScratch::kPerCandidate;
-constexpr int kSamples = 3;  // of a candidate
-constexpr int kSquare = 3;   // of a difference
+constexpr int kSamples = 3;                // of a candidate
+constexpr int kSquare = 3;                 // of a difference
+constexpr float kRoundingShare2 = 1e-10f;  // of a value squared: that of 1e-5
 
 HOLDFAST_INLINE void read_body(const CandidateBlock& a) {
   TapLanes lanes;
@@ -60,6 +61,9 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
   const float *d0 = s.means[kStep * k].row(a.y) + a.x, *d1 = s.means[kStep * k + 1].row(a.y) + a.x,
               *d2 = s.means[kStep * k + 2].row(a.y) + a.x,
               *square_mean = s.means[kStep * k + kSquare].row(a.y) + a.x;
+  const float *h0 = s.candidates[kStep * k].row(a.y) + a.x,
+              *h1 = s.candidates[kStep * k + 1].row(a.y) + a.x,
+              *h2 = s.candidates[kStep * k + 2].row(a.y) + a.x;
   const float* spread = a.spread;
   const float beta = a.rule.residual_beta, spatial_samples = a.rule.spatial_samples;
   const float sudden_threshold = a.sudden_threshold, lasting_threshold = a.lasting_threshold;
@@ -68,7 +72,8 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
     const float samples = n[i] > 0.0f ? n[i] : 1.0f, square = square_mean[i];
     // The difference also holds the candidate's own noise.
     const float d_norm2 = norm2(d0[i], d1[i], d2[i]);
-    const float of_difference = max_of(square - d_norm2, 1e-6f * square + 1e-30f);
+    const float rounding = kRoundingShare2 * norm2(h0[i], h1[i], h2[i]);
+    const float of_difference = max_of(square - d_norm2, 1e-6f * square + rounding + 1e-30f);
     const float variance = of_difference * samples / (samples + 1.0f);
     const float u = of_difference * spread[i];
     // Joined with the mean of those before: a recursive mean of weight beta, which starts as the

@@ -8,26 +8,27 @@
 namespace holdfast {
 namespace {
 
-/// Covariance of a cast shape, px^2.
-struct Covariance {
-  float xx, xy, yy;
+/// A vector in the image, px.
+struct Shift {
+  float x, y;
 };
 
-/// Adds a half axis A of the light: it moves the shadow point by tau (-A + (A.n) t / (t.n)), where
+/// Far enough for any image, and near enough for products of four to be finite.
+HOLDFAST_INLINE float bounded_px(float v) { return min_of(max_of(v, -1e9f), 1e9f); }
+
+HOLDFAST_INLINE float cross(const Shift& a, const Shift& b) { return a.x * b.y - a.y * b.x; }
+
+/// How a half axis A of the light moves the shadow point: by tau (-A + (A.n) t / (t.n)), where
 /// t = blocker - light and tau = receiver distance / |t|, both along the ray. The move is projected
 /// by the derivative at the point: its end may well lie behind the camera.
-HOLDFAST_INLINE void add_axis(const Projection& pixel, const Float3& axis, const Float3& normal,
-                              const Float3& slide, float tau, float px, float py, float per_w,
-                              float share, Covariance& sum) {
+HOLDFAST_INLINE Shift cast_axis(const Projection& pixel, const Float3& axis, const Float3& normal,
+                                const Float3& slide, float tau, float px, float py, float per_w) {
   const float along = dot(axis, normal);
   const Float3 move{tau * (along * slide.x - axis.x), tau * (along * slide.y - axis.y),
                     tau * (along * slide.z - axis.z)};
   const float w = dot(pixel.w, move);
-  const float dx = (dot(pixel.rows.x, move) - px * w) * per_w;
-  const float dy = (dot(pixel.rows.y, move) - py * w) * per_w;
-  sum.xx += share * dx * dx;
-  sum.xy += share * dx * dy;
-  sum.yy += share * dy * dy;
+  return {bounded_px((dot(pixel.rows.x, move) - px * w) * per_w),
+          bounded_px((dot(pixel.rows.y, move) - py * w) * per_w)};
 }
 
 template <int kAxes>
@@ -40,7 +41,7 @@ HOLDFAST_INLINE void cast_block(const ShadowCast& a) {
   const float *depth = pixels.depth, *nx = pixels.normal[0], *ny = pixels.normal[1],
               *nz = pixels.normal[2], *distance = a.distance;
   const float *lx = a.light[0], *ly = a.light[1], *lz = a.light[2];
-  const float light_w = a.light_w, py = a.pixel_y, share = a.cast_variance;
+  const float light_w = a.light_w, py = a.pixel_y, deviation = __builtin_sqrtf(a.cast_variance);
   const float own = a.pixel_variance;
   float *out_valid = a.valid, *out_ratio = a.ratio;
   float *out_0 = a.precision[0], *out_1 = a.precision[1], *out_2 = a.precision[2];
@@ -63,16 +64,26 @@ HOLDFAST_INLINE void cast_block(const ShadowCast& a) {
     const float px = pixels.first_x + static_cast<float>(i);
     const float w = dot(pixel.w, point) + pixel.w0;
     const float per_w = 1.0f / (w > 0.0f ? w : 1.0f);
-    Covariance sum{own, 0.0f, own};
-    add_axis(pixel, axis_0, normal, slide, tau, px, py, per_w, share, sum);
-    add_axis(pixel, axis_1, normal, slide, tau, px, py, per_w, share, sum);
-    if constexpr (kAxes > 2) add_axis(pixel, axis_2, normal, slide, tau, px, py, per_w, share, sum);
-    const float scale = 0.5f / max_of(sum.xx * sum.yy - sum.xy * sum.xy, 1e-12f);
+    const float reach = deviation * tau;
+    const Shift s0 = cast_axis(pixel, axis_0, normal, slide, reach, px, py, per_w);
+    const Shift s1 = cast_axis(pixel, axis_1, normal, slide, reach, px, py, per_w);
+    float xx = s0.x * s0.x + s1.x * s1.x, yy = s0.y * s0.y + s1.y * s1.y;
+    float xy = s0.x * s0.y + s1.x * s1.y, areas = square(cross(s0, s1));
+    if constexpr (kAxes > 2) {
+      const Shift s2 = cast_axis(pixel, axis_2, normal, slide, reach, px, py, per_w);
+      xx += s2.x * s2.x;
+      yy += s2.y * s2.y;
+      xy += s2.x * s2.y;
+      areas += square(cross(s0, s2)) + square(cross(s1, s2));
+    }
+    // The determinant without its difference of near equals: shadows may be cast very long.
+    const float determinant = own * own + own * (xx + yy) + areas;
+    const float scale = 0.5f / max_of(determinant, own * own);
     out_valid[i] = valid ? 1.0f : 0.0f;
     out_ratio[i] = valid ? ratio : 0.0f;
-    out_0[i] = valid ? sum.yy * scale : 0.0f;
-    out_1[i] = valid ? -sum.xy * scale : 0.0f;
-    out_2[i] = valid ? sum.xx * scale : 0.0f;
+    out_0[i] = valid ? (own + yy) * scale : 0.0f;
+    out_1[i] = valid ? -xy * scale : 0.0f;
+    out_2[i] = valid ? (own + xx) * scale : 0.0f;
   }
 }
 

@@ -61,10 +61,7 @@ HOLDFAST_INLINE void statistics_kernel_body(const StatisticsRow& a) {
   for (int c = 0; c < 3; ++c) {
     const float* __restrict precision = a.precision[c];
     float* __restrict out = a.footprint[c];
-    for (int x = 0; x < a.width; ++x) {
-      const float share = valid[x] > 0.0f ? valid[x] : 1.0f;
-      out[x] = valid[x] > 0.0f ? precision[x] / share : 0.0f;
-    }
+    for (int x = 0; x < a.width; ++x) out[x] = precision[x] / max_of(valid[x], kLeastFieldShare);
   }
 }
 

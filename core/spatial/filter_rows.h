@@ -33,8 +33,12 @@ struct NarrowRow {
 };
 void narrow_row(const NarrowRow& row) noexcept;
 
+/// Share of the samples nearby that must say something of an effect. What is less is the faint
+/// weight of other surfaces, which is e^-87 or nothing at all by rounding: it must not decide.
+inline constexpr float kLeastFieldShare = 1e-3f;
+
 /// From local means: variance = max(square - mean^2, floor), floor = floor_share mean^2 + floor_0;
-/// and, if `valid` is not null, footprint[c] = precision[c] / valid, 0 where valid is 0.
+/// and, if `valid` is not null, footprint[c] = precision[c] / max(valid, kLeastFieldShare).
 struct StatisticsRow {
   const float *mean, *square;
   float floor_share, floor_0;

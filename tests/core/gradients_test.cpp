@@ -85,6 +85,21 @@ TEST(Gradients, StayOnTheirSurface) {
     for (int x = 0; x < 20; ++x) EXPECT_NEAR(lambda.at(x, y), x < 10 ? 0.0f : 1.0f, 1e-6f) << x;
 }
 
+// A step of 60 pixel widths weighs e^-60: enough for a float, and nothing to go by.
+TEST(Gradients, OfAnotherSurfaceCountForNothingWhereTheOwnHasNone) {
+  Gradients g(60, 30, 0.0f, 0.0f);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 30; x < 60; ++x) {
+      const float step = 60 * 3 * static_cast<float>(g.guides.view.pixel_angle);
+      test::set_pixel(g.guides, x, y, 5.0f + step, {0, 0, 1}, 2);
+    }
+  for (int y = 0; y < 10; ++y)
+    for (int x = 10; x < 20; ++x) g.set(x, y, 1.0f, 0.0f);
+  const auto lambda = g.antilag(1);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 20; ++x) EXPECT_NEAR(lambda.at(x, y), x < 10 ? 0.0f : 1.0f, 1e-6f) << x;
+}
+
 TEST(Gradients, OfNoiseInBothDirectionsCancel) {
   Gradients g(90, 90, 0.0f, 0.0f);
   test::Random random(9);

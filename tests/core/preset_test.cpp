@@ -28,7 +28,8 @@ PlaneSet last_of(const DenoiserConfig& config, int frames) {
 }
 
 TEST(Preset, NamesAreListedFastestFirst) {
-  EXPECT_EQ(preset_names(), (std::vector<std::string>{"fast", "balanced", "accurate"}));
+  EXPECT_EQ(preset_names(),
+            (std::vector<std::string>{"fast", "balanced", "accurate", "reference"}));
 }
 
 TEST(Preset, BalancedTakesEveryRecipeAsItIs) {
@@ -82,8 +83,8 @@ TEST(Preset, WrongChoicesAreRefusedByName) {
     spoil(config);
     test::expect_input_error([&] { Denoiser denoiser(config); }, subject, rule, value);
   };
-  refuses([](DenoiserConfig& c) { c.preset = "slow"; }, "preset", "fast, balanced, accurate",
-          "'slow'");
+  refuses([](DenoiserConfig& c) { c.preset = "slow"; }, "preset",
+          "fast, balanced, accurate, reference", "'slow'");
   refuses([](DenoiserConfig& c) { c.indirect_basis = "sh"; }, "indirect basis",
           "irradiance, luminance-cones, cones", "'sh'");
   refuses([](DenoiserConfig& c) { c.half_resolution = {"shadow"}; }, "half resolution",

@@ -78,6 +78,19 @@ TEST(RadianceBlend, ConstantImageIsAFixedPoint) {
   }
 }
 
+// What a history of equal values differs by is rounding: it says nothing against the history.
+TEST(RadianceBlend, RoundingIsNotTakenForBias) {
+  for (const float level : {1e-6f, 0.5f, 1e6f}) {
+    Blend b;
+    b.fill_history({level * 1.0000003f, level, 2 * level}, 8);
+    for (int c = 0; c < 3; ++c) test::fill(b.noisy[c], c < 2 ? level : 2 * level);
+    b.run(b.by_surface());
+    Blend::each([&](int x, int y) {
+      ASSERT_NEAR(std::as_const(b.now).samples().at(x, y), 9.0f, 0.1f) << level;
+    });
+  }
+}
+
 // Luminance alone would see nothing: 0.2126 r + 0.7152 g + 0.0722 b is the same.
 TEST(RadianceBlend, ShiftOfHueAtTheSameLuminanceIsFoundAndCorrected) {
   const std::array<float, 3> truth{0.6f, 0.5f, 0.4f};

@@ -115,6 +115,22 @@ TEST(ShadowTracer, FollowsABlockedSampleThroughAllMotions) {
   }
 }
 
+// A light without height casts a line, a thousand times longer than a pixel: across it the
+// precision is that of a pixel, 1/2 over its variance of 1/2 px^2, and along it nearly none.
+TEST(ShadowTracer, ALongThinCastKeepsItsPrecisionAcross) {
+  World world;
+  world.light = {2, LightShape::kRectangle, 2000.0, 0.0, 0};
+  world.move();
+  for (int x = 4; x < kWidth; x += 5) world.block(x, 20, 0.5f, 0.5f, 0.9);
+  Channels<float> field(kWidth, kHeight, kEffectFieldChannels);
+  world.tracer().measure(field, 0);
+  for (int x = 4; x < kWidth; x += 5) {
+    ASSERT_EQ(field[kFieldValid].at(x, 20), 1.0f);
+    EXPECT_NEAR(field[kFieldPrecision].at(x, 20) + field[kFieldPrecision + 2].at(x, 20), 1.0, 1e-4)
+        << x;
+  }
+}
+
 TEST(ShadowTracer, BorrowedBlockersMoveWithTheNearestBlockedSample) {
   World world;
   world.move();

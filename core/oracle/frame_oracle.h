@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "core/denoiser/plan.h"
+#include "core/denoiser/stage_timer.h"
+#include "core/oracle/component.h"
+
+namespace holdfast::oracle {
+
+/// The whole frame of any recipe, at full resolution; keeps history of its own. What the preset
+/// `reference` runs in place of the kernels.
+class FrameOracle {
+ public:
+  /// `config` and `plan` must outlive the oracle. Throws InputError for components at half
+  /// resolution, which the oracle does not know.
+  FrameOracle(const DenoiserConfig& config, const Plan& plan);
+
+  /// Filters one checked frame into `results`, whose planes are there. `has_past`: history of the
+  /// frame before is to be used. Adds repairs, changes and counts to `report`.
+  void filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report,
+              StageTimer& timer);
+
+  /// Held between frames.
+  std::size_t bytes() const;
+
+ private:
+  Surfaces load(const Frame& frame, FrameReport& report) const;
+  std::vector<Image> filter_components(const FrameView& view, const Frame& frame, PlaneSet& results,
+                                       FrameReport& report, StageTimer& timer);
+  Image composite(const Surfaces& now, const std::vector<Image>& filtered, const Frame& frame,
+                  StageTimer& timer) const;
+
+  const DenoiserConfig& config_;
+  const Plan& plan_;
+  Scene scene_;
+  Surfaces previous_;
+  std::vector<ComponentOracle> components_;
+};
+
+}  // namespace holdfast::oracle
