@@ -40,6 +40,8 @@ struct ServerConfig {
   std::chrono::milliseconds keepalive{10000};         ///< a silent peer is asked after this
   std::chrono::milliseconds keepalive_timeout{5000};  ///< and lost if it does not answer in this
   std::size_t max_streams = 256;                      ///< open streams, of all clients
+  std::chrono::milliseconds hello_timeout{10000};     ///< for Hello in a new stream; 0 = none
+  std::chrono::milliseconds frame_timeout{30000};     ///< from FrameBegin to FrameEnd; 0 = none
   TlsConfig tls;
   std::string token_file;  ///< bearer tokens of clients, one a line; empty = none asked for
   SessionLimits limits;

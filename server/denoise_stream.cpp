@@ -79,6 +79,7 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   hold_ = attached.hold;
   heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
+  deadlines_.greeted();
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
@@ -96,7 +97,10 @@ bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
   if (assembler_->open()) post(assembler_->abandon("another FrameBegin"));
   FrameSlot* const slot = free_slot();
   stalled_ = slot == nullptr;
-  if (slot) assembler_->begin(begin, *slot);
+  if (slot) {
+    assembler_->begin(begin, *slot);
+    deadlines_.frame_begun(slot->begun);
+  }
   return slot != nullptr;
 }
 
@@ -119,6 +123,7 @@ void DenoiseStream::read_on() {
 // --- filtering -----------------------------------------------------------------------------------
 
 void DenoiseStream::post(FrameSlot& slot) {
+  deadlines_.frame_ended();
   if (!slot.error) ++waiting_;
   state_.scheduler.post(session_->strand(),
                         [self = shared_from_this(), &slot] { self->filter(slot); });
@@ -237,6 +242,18 @@ void DenoiseStream::yield(SessionLife::Hold hold) {
         RefusedError(Refusal::kTakenOver, "a newer stream has the session")));
   broken_ = true;
   if (!writing_) drop_unsent();
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::tick(StreamDeadlines::TimePoint now) {
+  std::unique_lock lock(mutex_);
+  if (deadlines_.passed(now) && !read_all_ && !broken_) {
+    const bool in_frame = assembler_ && assembler_->open();
+    if (in_frame) post(assembler_->abandon("nothing within the limit frame-timeout-ms"));
+    refuse(std::make_exception_ptr(RefusedError(
+        Refusal::kTooSlow, in_frame ? "a frame was not whole within the limit frame-timeout-ms"
+                                    : "no Hello came within the limit hello-timeout-ms")));
+  }
   unlock_and_finish(lock);
 }
 

@@ -14,6 +14,7 @@
 #include "server/frame_assembler.h"
 #include "server/result_sender.h"
 #include "server/service_state.h"
+#include "server/stream_deadlines.h"
 
 namespace holdfast::server {
 
@@ -42,6 +43,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void close(const grpc::Status& status);
   /// Ends the stream if `hold` on its session is newer than its own: what is in flight is dropped.
   void yield(SessionLife::Hold hold);
+  /// Ends the stream if its client is silent or slow beyond the limits; called from time to time.
+  void tick(StreamDeadlines::TimePoint now);
   /// Empty before Hello.
   std::string session_id() const;
 
@@ -51,7 +54,10 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void OnDone() override;
 
  private:
-  explicit DenoiseStream(ServiceState& state) : state_(state) {}
+  explicit DenoiseStream(ServiceState& state)
+      : state_(state),
+        deadlines_(state.config.hello_timeout, state.config.frame_timeout,
+                   StreamDeadlines::TimePoint::clock::now()) {}
 
   // All of these are called with the mutex held.
   bool handle_request();
@@ -78,6 +84,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::shared_ptr<DenoiseStream> self_;
 
   mutable std::mutex mutex_;
+  StreamDeadlines deadlines_;
   std::shared_ptr<Session> session_;
   SessionLife::Hold hold_ = 0;  ///< on session_
   bool heir_ = false;           ///< an older stream of the session has to be ended

@@ -44,6 +44,7 @@ const char* name_of(Refusal reason) {
     case Refusal::kLimit: return "limit";
     case Refusal::kDraining: return "draining";
     case Refusal::kUnauthenticated: return "unauthenticated";
+    case Refusal::kTooSlow: return "too_slow";
   }
   return "failure";
 }
@@ -87,7 +88,7 @@ Metrics::Metrics()
     frames_.Add({{"result", result}});
   for (const char* reason : {"first", "cut", "epoch", "failure"}) resets_.Add({{"reason", reason}});
   for (const char* reason : {"invalid", "unknown_session", "wrong_token", "taken_over", "limit",
-                             "draining", "unauthenticated", "failure"})
+                             "draining", "unauthenticated", "too_slow", "failure"})
     refusals_.Add({{"reason", reason}});
   for (const char* reason : {"deleted", "expired"}) ends_.Add({{"reason", reason}});
 }

@@ -22,7 +22,7 @@ namespace holdfast::server {
 ///   holdfast_history_resets_total{reason} first, cut, epoch, failure
 ///   holdfast_refusals_total{reason}       invalid, unknown_session, wrong_token, taken_over,
 ///   limit,
-///                                         draining, unauthenticated, failure
+///                                         draining, unauthenticated, too_slow, failure
 ///   holdfast_session_ends_total{reason}   deleted, expired
 ///   holdfast_sessions, holdfast_streams, holdfast_session_bytes, holdfast_resident_bytes,
 ///   holdfast_ready                        at the time of reading

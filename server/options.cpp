@@ -79,6 +79,11 @@ void add_options(CLI::App& app, ServerConfig& config) {
   knobs.milliseconds("--keepalive-ms", config.keepalive, "silence after which a peer is asked");
   knobs.milliseconds("--keepalive-timeout-ms", config.keepalive_timeout,
                      "silence after that for which it is lost");
+  knobs.milliseconds("--hello-timeout-ms", config.hello_timeout,
+                     "for the first message of a stream, after which it is ended; 0 = none");
+  knobs.milliseconds("--frame-timeout-ms", config.frame_timeout,
+                     "for a frame that has begun, after which it fails and its stream is ended; "
+                     "0 = none");
   knobs.value("--tls-cert", config.tls.certificate, "PEM file, chain of the server");
   knobs.value("--tls-key", config.tls.key, "PEM file, its private key");
   knobs.value("--tls-client-ca", config.tls.client_ca,

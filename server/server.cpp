@@ -33,6 +33,15 @@ const ServerConfig& checked(const ServerConfig& config) {
   return config;
 }
 
+/// How often streams look at the clock: often enough that no limit is overrun by more than a
+/// quarter, nor by more than a second.
+std::chrono::milliseconds tick_period(const ServerConfig& config) {
+  std::chrono::milliseconds period{1000};
+  for (const auto limit : {config.hello_timeout, config.frame_timeout})
+    if (limit.count() > 0) period = std::min(period, limit / 4);
+  return std::max(period, std::chrono::milliseconds(5));
+}
+
 /// Calls `work` once a period on a thread of its own, until destroyed.
 class Timer {
  public:
@@ -70,6 +79,8 @@ class Server::Impl {
     expiry_.emplace(kExpiryPeriod, [this] {
       if (const int ended = state_.sessions.expire(); ended > 0) expired(ended);
     });
+    ticks_.emplace(tick_period(config),
+                   [this] { state_.streams.tick(std::chrono::steady_clock::now()); });
     if (!config.admin.empty()) start_admin();
   }
 
@@ -124,6 +135,9 @@ class Server::Impl {
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, milliseconds(state_.config.keepalive));
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS,
                                milliseconds(state_.config.keepalive_timeout));
+    if (state_.config.hello_timeout.count() > 0)  // connections that say nothing at all
+      builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS,
+                                 milliseconds(state_.config.hello_timeout));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinPingMs);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     // The probe finds the window of a long link; a unix socket has none to find.
@@ -150,7 +164,7 @@ class Server::Impl {
   DenoiseService denoise_service_;
   std::string address_;
   std::unique_ptr<grpc::Server> server_;
-  std::optional<Timer> expiry_;
+  std::optional<Timer> expiry_, ticks_;
   std::optional<AdminHttp> admin_;
 };
 
