@@ -19,6 +19,9 @@ struct SessionLimits {
   int max_dimension = kMaxDimension;                     ///< pixels, width and height of a frame
   std::chrono::milliseconds linger{30000};  ///< a session without a stream is kept this long
   int credits = 3;                          ///< frames in flight for each session, >= 1
+  double max_frames_per_second = 0;         ///< of each session; 0 = no limit
+  std::size_t max_bytes_per_second = 0;     ///< that each session may send; 0 = no limit
+  std::size_t max_sessions_per_token = 0;   ///< made with the same bearer token; 0 = no limit
 };
 
 /// Encryption of the service; off unless `certificate` is set. All are files in PEM form, read

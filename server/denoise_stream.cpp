@@ -36,6 +36,7 @@ void DenoiseStream::OnReadDone(bool ok) {
     try {
       const bool more = handle_request();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
+      if (rates_) hold_reading(rates_->count_bytes(request_.ByteSizeLong(), Clock::now()));
       if (more) read_on();
     } catch (...) {
       refuse(std::current_exception());
@@ -76,6 +77,7 @@ bool DenoiseStream::handle_request() {
 void DenoiseStream::handle_hello(const v1::Hello& hello) {
   const SessionTable::Attached attached = state_.sessions.attach(hello.session_id(), hello.token());
   session_ = attached.session;
+  rates_ = attached.rates;
   hold_ = attached.hold;
   heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
@@ -96,12 +98,31 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
 bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
   if (assembler_->open()) post(assembler_->abandon("another FrameBegin"));
   FrameSlot* const slot = free_slot();
-  stalled_ = slot == nullptr;
-  if (slot) {
+  const auto wait = slot ? rates_->admit_frame(Clock::now()) : SessionRates::Duration::zero();
+  stalled_ = !slot || wait > SessionRates::Duration::zero();
+  if (!stalled_) {
     assembler_->begin(begin, *slot);
     deadlines_.frame_begun(slot->begun);
+  } else if (slot) {
+    free_.push_back(slot);
+    hold_reading(wait);
   }
-  return slot != nullptr;
+  return !stalled_;
+}
+
+/// Nothing is read for that long: the windows of HTTP/2 fill, and the client waits.
+void DenoiseStream::hold_reading(SessionRates::Duration time) {
+  if (time <= SessionRates::Duration::zero()) return;
+  const Clock::time_point now = Clock::now();
+  read_due_ = std::max(read_due_.value_or(now), now + time);
+  deadlines_.pause(now);
+}
+
+/// The FrameBegin that was held up tries again.
+void DenoiseStream::begin_stalled() {
+  if (!stalled_) return;
+  stalled_ = false;
+  if (!read_all_ && !broken_) handle_frame_begin(request_.frame_begin());
 }
 
 FrameSlot* DenoiseStream::free_slot() {
@@ -115,7 +136,7 @@ FrameSlot* DenoiseStream::free_slot() {
 }
 
 void DenoiseStream::read_on() {
-  if (reading_ || stalled_ || read_all_ || broken_ || finished_) return;
+  if (reading_ || stalled_ || read_due_ || read_all_ || broken_ || finished_) return;
   reading_ = true;
   StartRead(&request_);
 }
@@ -210,10 +231,8 @@ bool DenoiseStream::next_response() {
 void DenoiseStream::release(FrameSlot& slot) {
   slot.answer.reset();
   free_.push_back(&slot);
-  if (!stalled_) return;
-  stalled_ = false;
-  if (read_all_ || broken_) return;
-  handle_frame_begin(request_.frame_begin());
+  if (!stalled_ || read_due_) return;
+  begin_stalled();
   read_on();
 }
 
@@ -247,6 +266,12 @@ void DenoiseStream::yield(SessionLife::Hold hold) {
 
 void DenoiseStream::tick(StreamDeadlines::TimePoint now) {
   std::unique_lock lock(mutex_);
+  if (read_due_ && now >= *read_due_) {
+    read_due_.reset();
+    deadlines_.resume(now);
+    begin_stalled();
+    read_on();
+  }
   if (deadlines_.passed(now) && !read_all_ && !broken_) {
     const bool in_frame = assembler_ && assembler_->open();
     if (in_frame) post(assembler_->abandon("nothing within the limit frame-timeout-ms"));

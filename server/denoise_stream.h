@@ -43,7 +43,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void close(const grpc::Status& status);
   /// Ends the stream if `hold` on its session is newer than its own: what is in flight is dropped.
   void yield(SessionLife::Hold hold);
-  /// Ends the stream if its client is silent or slow beyond the limits; called from time to time.
+  /// Ends the stream if its client is silent or slow beyond the limits, and reads on where it was
+  /// held up for a limit on rates; called from time to time.
   void tick(StreamDeadlines::TimePoint now);
   /// Empty before Hello.
   std::string session_id() const;
@@ -64,6 +65,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void handle_hello(const v1::Hello& hello);
   bool handle_frame_begin(const v1::FrameBegin& begin);
   FrameSlot* free_slot();
+  void hold_reading(SessionRates::Duration time);
+  void begin_stalled();
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
@@ -88,6 +91,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::shared_ptr<Session> session_;
   SessionLife::Hold hold_ = 0;  ///< on session_
   bool heir_ = false;           ///< an older stream of the session has to be ended
+  std::shared_ptr<SessionRates> rates_;
+  std::optional<SessionRates::TimePoint> read_due_;  ///< nothing is read before, for `rates_`
   std::optional<FrameAssembler> assembler_;
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
@@ -98,7 +103,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   v1::DenoiseResponse response_;
   int waiting_ = 0;        ///< whole good frames that wait to be filtered
   bool reading_ = false;   ///< a read is under way
-  bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot
+  bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot or for its turn
   bool writing_ = false;   ///< a write is under way
   bool read_all_ = false;  ///< the client has ended its side, or nothing more is to be read
   bool closing_ = false;   ///< ends after the frame that is being read

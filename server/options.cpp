@@ -72,6 +72,14 @@ void add_options(CLI::App& app, ServerConfig& config) {
   knobs.bytes("--max-total-bytes", config.limits.max_total_bytes, "memory of all sessions");
   knobs.value("--credits", config.limits.credits, "frames in flight for each session")
       ->check(CLI::Range(1, 16));
+  knobs
+      .value("--max-frames-per-second", config.limits.max_frames_per_second,
+             "of each session, beyond which its stream is read no faster; 0 = no limit")
+      ->check(CLI::Range(0.0, 100000.0));
+  knobs.bytes("--max-bytes-per-second", config.limits.max_bytes_per_second,
+              "that each session may send, in the same way; 0 = no limit");
+  knobs.value("--max-sessions-per-token", config.limits.max_sessions_per_token,
+              "made with the same bearer token; 0 = no limit");
   knobs.milliseconds("--linger-ms", config.limits.linger,
                      "how long a session is kept without a stream");
   knobs.milliseconds("--drain-ms", config.drain_deadline,

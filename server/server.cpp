@@ -23,7 +23,8 @@ namespace {
 constexpr int kHttp2FrameBytes = 1 << 20;  // fewer, larger frames: less CPU for large messages
 constexpr std::chrono::seconds kExpiryPeriod{1};
 
-constexpr int kMinPingMs = 5000;  // between a client's own pings
+constexpr std::chrono::milliseconds kRatePeriod{5};  // how exactly limits on rates are kept
+constexpr int kMinPingMs = 5000;                     // between a client's own pings
 
 int milliseconds(std::chrono::milliseconds time) { return static_cast<int>(time.count()); }
 
@@ -39,6 +40,8 @@ std::chrono::milliseconds tick_period(const ServerConfig& config) {
   std::chrono::milliseconds period{1000};
   for (const auto limit : {config.hello_timeout, config.frame_timeout})
     if (limit.count() > 0) period = std::min(period, limit / 4);
+  const SessionLimits& limits = config.limits;
+  if (limits.max_frames_per_second > 0 || limits.max_bytes_per_second > 0) period = kRatePeriod;
   return std::max(period, std::chrono::milliseconds(5));
 }
 

@@ -10,6 +10,7 @@
 #include "server/config.h"
 #include "server/session.h"
 #include "server/session_life.h"
+#include "server/session_rates.h"
 
 namespace holdfast::server {
 
@@ -22,10 +23,11 @@ class SessionTable {
 
   explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
 
-  /// Makes a session with a random id and token. Its memory is estimated and admitted before
+  /// Makes a session with a random id and token. `owner`: the bearer token that it is made with,
+  /// empty if there is none. Its memory is estimated and admitted before
   /// anything of its size is allocated, then corrected to what it is. Throws InputError for a bad
   /// configuration, RefusedError(kLimit) naming the limit.
-  std::shared_ptr<Session> create(SessionConfig config);
+  std::shared_ptr<Session> create(SessionConfig config, const std::string& owner = {});
 
   /// The session. Throws RefusedError(kUnknownSession, kWrongToken).
   std::shared_ptr<Session> find(const std::string& id, const std::string& token) const;
@@ -33,6 +35,7 @@ class SessionTable {
   /// A session held for one stream until `detach`.
   struct Attached {
     std::shared_ptr<Session> session;
+    std::shared_ptr<SessionRates> rates;
     SessionLife::Hold hold = 0;
     bool taken_over = false;  ///< from an older stream, whose hold is void now
   };
@@ -58,10 +61,13 @@ class SessionTable {
     std::shared_ptr<Session> session;  ///< null while it is being made
     std::size_t bytes = 0;
     SessionLife life;
+    std::string owner;  ///< a secret: compared, never shown
+    std::shared_ptr<SessionRates> rates;
   };
 
   const Entry& checked(const std::string& id, const std::string& token) const;
-  void admit(const std::string& id, std::size_t bytes);
+  void admit(const std::string& id, std::size_t bytes, const std::string& owner);
+  void check_owner(const std::string& owner) const;
   void settle(const std::string& id, std::size_t bytes);
   void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
 
