@@ -34,6 +34,7 @@ void DenoiseStream::OnReadDone(bool ok) {
     if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
   } else if (!read_all_ && !broken_) {
     try {
+      state_.metrics.received_bytes(request_.ByteSizeLong());
       const bool more = handle_request();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
       if (rates_) hold_reading(rates_->count_bytes(request_.ByteSizeLong(), Clock::now()));
@@ -68,10 +69,16 @@ bool DenoiseStream::handle_request() {
     throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
                      "must be inside a frame", "outside");
   if (kind == Message::kPlaneChunk)
-    assembler_->add(request_.plane_chunk());
+    decode(request_.plane_chunk());
   else
     post(assembler_->end(request_.frame_end()));
   return true;
+}
+
+void DenoiseStream::decode(const v1::PlaneChunk& chunk) {
+  const Clock::time_point start = Clock::now();
+  assembler_->add(chunk);
+  open_->decode += Clock::now() - start;
 }
 
 void DenoiseStream::handle_hello(const v1::Hello& hello) {
@@ -102,6 +109,8 @@ bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
   stalled_ = !slot || wait > SessionRates::Duration::zero();
   if (!stalled_) {
     assembler_->begin(begin, *slot);
+    open_ = slot;
+    slot->decode = slot->encode = {};
     deadlines_.frame_begun(slot->begun);
   } else if (slot) {
     free_.push_back(slot);
@@ -205,7 +214,9 @@ void DenoiseStream::OnWriteDone(bool ok) {
 void DenoiseStream::write_on() {
   if (writing_ || broken_ || finished_) return;
   writing_ = next_response();
-  if (writing_) StartWrite(&response_);
+  if (!writing_) return;
+  state_.metrics.sent_bytes(response_.ByteSizeLong());
+  StartWrite(&response_);
 }
 
 /// Fills `response_`; false if there is nothing to send.
@@ -217,14 +228,23 @@ bool DenoiseStream::next_response() {
   }
   while (!sending_.empty()) {
     if (!sender_) sender_.emplace(*sending_.front(), session_->config());
-    if (sender_->next(response_)) return true;
+    if (encode(*sending_.front())) return true;
     sender_.reset();
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
-    state_.metrics.sent(std::chrono::duration<double>(Clock::now() - sent.answered).count());
+    state_.metrics.sent(sent, preset_, Clock::now());
     release(sent);
   }
   return false;
+}
+
+/// Fills `response_` with the next message of the answer; false if there is none left.
+bool DenoiseStream::encode(FrameSlot& slot) {
+  const Clock::time_point start = Clock::now();
+  const bool more = sender_->next(response_);
+  slot.encode += Clock::now() - start;
+  if (more && response_.has_frame_result()) preset_ = response_.frame_result().preset();
+  return more;
 }
 
 /// Makes the slot free and lets a waiting FrameBegin have it.

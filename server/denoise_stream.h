@@ -73,6 +73,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   bool next_response();
   void release(FrameSlot& slot);
   void drop_unsent();
+  void decode(const v1::PlaneChunk& chunk);
+  bool encode(FrameSlot& slot);
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
@@ -94,11 +96,13 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::shared_ptr<SessionRates> rates_;
   std::optional<SessionRates::TimePoint> read_due_;  ///< nothing is read before, for `rates_`
   std::optional<FrameAssembler> assembler_;
+  FrameSlot* open_ = nullptr;  ///< of the frame that the assembler has open
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
   std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
   std::optional<ResultSender> sender_;
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
+  std::string preset_;                       ///< of the answer that is being sent
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
   int waiting_ = 0;        ///< whole good frames that wait to be filtered
