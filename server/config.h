@@ -36,6 +36,7 @@ struct TlsConfig {
 struct ServerConfig {
   std::string listen = "127.0.0.1:50051";  ///< host:port (port 0 = any free one) or unix:PATH
   std::string admin;                       ///< host:port of the admin port; empty = none
+  bool admin_previews = false;             ///< the admin port shows pictures of sessions
   bool allow_remote = false;               ///< addresses beyond this machine may be listened on
   int threads = 0;                         ///< threads that filter; 0 = one for each core
   std::string log_level = "info";          ///< trace, debug, info, warn, error, off

@@ -85,6 +85,7 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   const SessionTable::Attached attached = state_.sessions.attach(hello.session_id(), hello.token());
   session_ = attached.session;
   rates_ = attached.rates;
+  watch_ = attached.watch;
   hold_ = attached.hold;
   heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
@@ -178,6 +179,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
     }
   slot.answered = Clock::now();
   if (wanted) log_frame(slot);
+  if (wanted && state_.config.admin_previews) show_frame(slot);
   if (wanted) state_.metrics.filtered(slot);
   std::unique_lock lock(mutex_);
   if (broken_) {
@@ -196,6 +198,15 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
   else
     state_.log->debug("event=frame session={} frame={} core_ms={:.2f} reset={}", session_->id(),
                       slot.frame.index, slot.answer->report.ms, slot.answer->report.history_reset);
+}
+
+/// For the live page, if somebody looks at it.
+void DenoiseStream::show_frame(const FrameSlot& slot) const try {
+  const Clock::time_point now = Clock::now();
+  if (slot.error || slot.repeated || slot.answer->dropped || !watch_->preview().wanted(now)) return;
+  watch_->preview().put(preview(slot.frame, slot.answer->results), now);
+} catch (const std::exception& error) {  // a picture for onlookers costs no frame
+  state_.log->warn("event=no_preview session={} error=\"{}\"", session_->id(), error.what());
 }
 
 // --- writing -------------------------------------------------------------------------------------
@@ -232,7 +243,9 @@ bool DenoiseStream::next_response() {
     sender_.reset();
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
-    state_.metrics.sent(sent, preset_, Clock::now());
+    const Clock::time_point now = Clock::now();
+    state_.metrics.sent(sent, preset_, now);
+    watch_->sent(sent, preset_, now);
     release(sent);
   }
   return false;

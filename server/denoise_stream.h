@@ -84,6 +84,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   /// Takes the mutex off and calls Finish if everything is done.
   void unlock_and_finish(std::unique_lock<std::mutex>& lock);
   void log_frame(const FrameSlot& slot) const;
+  void show_frame(const FrameSlot& slot) const;
 
   ServiceState& state_;
   std::shared_ptr<DenoiseStream> self_;
@@ -93,6 +94,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::shared_ptr<Session> session_;
   SessionLife::Hold hold_ = 0;  ///< on session_
   bool heir_ = false;           ///< an older stream of the session has to be ended
+  std::shared_ptr<SessionWatch> watch_;
   std::shared_ptr<SessionRates> rates_;
   std::optional<SessionRates::TimePoint> read_due_;  ///< nothing is read before, for `rates_`
   std::optional<FrameAssembler> assembler_;

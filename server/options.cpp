@@ -54,7 +54,11 @@ void add_options(CLI::App& app, ServerConfig& config) {
   app.allow_config_extras(CLI::config_extras_mode::error);
   Knobs knobs(app);
   knobs.value("--listen", config.listen, "host:port (port 0 = any free one) or unix:PATH");
-  knobs.value("--admin", config.admin, "host:port for /healthz, /readyz, /metrics; empty = none");
+  knobs.value("--admin", config.admin,
+              "host:port of the live page, /healthz, /readyz and /metrics; empty = none");
+  app.add_flag("--admin-previews", config.admin_previews,
+               "the live page also shows the last frame of each session")
+      ->envname(environment_name("--admin-previews"));
   app.add_flag("--allow-remote", config.allow_remote,
                "addresses that other machines can reach may be listened on")
       ->envname(environment_name("--allow-remote"));

@@ -15,6 +15,7 @@
 #include "server/listen_address.h"
 #include "server/log.h"
 #include "server/session_service.h"
+#include "server/sessions_json.h"
 #include "server/version.h"
 
 namespace holdfast::server {
@@ -121,10 +122,23 @@ class Server::Impl {
       return state_.metrics.text(
           {state_.sessions.size(), state_.streams.size(), state_.sessions.total_bytes(), ready()});
     };
-    admin_.emplace(state_.config.admin, AdminPages{ready, metrics});
+    const auto sessions = [this] {
+      return sessions_json(state_, std::chrono::steady_clock::now());
+    };
+    const auto preview = [this](int ordinal) { return preview_png(ordinal); };
+    admin_.emplace(state_.config.admin, AdminPages{ready, metrics, sessions, preview});
     state_.log->info("event=admin_listening address={}", admin_->address());
   }
 
+  std::string preview_png(int ordinal) {
+    if (!state_.config.admin_previews) return {};
+    for (const SessionTable::Listed& listed : state_.sessions.list()) {
+      if (listed.watch->ordinal() != ordinal) continue;
+      const Rgb8 picture = listed.watch->preview().look(std::chrono::steady_clock::now());
+      return picture.values.empty() ? std::string() : png(picture);
+    }
+    return {};
+  }
   void start() {
     const std::string& listen = state_.config.listen;
     grpc::EnableDefaultHealthCheckService(true);

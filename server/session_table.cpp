@@ -81,7 +81,8 @@ void SessionTable::admit(const std::string& id, std::size_t bytes, const std::st
   check_bytes(bytes, total_bytes_ + bytes);
   const TimePoint now = clock_();
   entries_.emplace(id, Entry{nullptr, bytes, SessionLife(now), owner,
-                             std::make_shared<SessionRates>(limits_, now)});
+                             std::make_shared<SessionRates>(limits_, now),
+                             std::make_shared<SessionWatch>(++made_)});
   total_bytes_ += bytes;
 }
 
@@ -115,7 +116,7 @@ SessionTable::Attached SessionTable::attach(const std::string& id, const std::st
   checked(id, token);
   Entry& entry = entries_.at(id);
   const bool taken_over = entry.life.streaming();
-  return {entry.session, entry.rates, entry.life.attach(), taken_over};
+  return {entry.session, entry.rates, entry.watch, entry.life.attach(), taken_over};
 }
 
 void SessionTable::detach(const Session& session, SessionLife::Hold hold) {
@@ -147,6 +148,20 @@ int SessionTable::expire() {
     }
   }
   return static_cast<int>(dying.size());
+}
+
+std::vector<SessionTable::Listed> SessionTable::list() const {
+  std::vector<Listed> out;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, entry] : entries_)
+      if (entry.session)
+        out.push_back({entry.session, entry.watch, entry.bytes, entry.life.streaming()});
+  }
+  std::sort(out.begin(), out.end(), [](const Listed& a, const Listed& b) {
+    return a.watch->ordinal() < b.watch->ordinal();
+  });
+  return out;
 }
 
 bool SessionTable::attached(const Session& session) const {

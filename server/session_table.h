@@ -11,6 +11,7 @@
 #include "server/session.h"
 #include "server/session_life.h"
 #include "server/session_rates.h"
+#include "server/session_watch.h"
 
 namespace holdfast::server {
 
@@ -36,6 +37,7 @@ class SessionTable {
   struct Attached {
     std::shared_ptr<Session> session;
     std::shared_ptr<SessionRates> rates;
+    std::shared_ptr<SessionWatch> watch;
     SessionLife::Hold hold = 0;
     bool taken_over = false;  ///< from an older stream, whose hold is void now
   };
@@ -50,6 +52,15 @@ class SessionTable {
   int expire();
 
   bool attached(const Session& session) const;
+  /// What is known of one session from outside.
+  struct Listed {
+    std::shared_ptr<const Session> session;
+    std::shared_ptr<SessionWatch> watch;
+    std::size_t bytes = 0;
+    bool streaming = false;
+  };
+  /// All sessions, in the order in which they were made.
+  std::vector<Listed> list() const;
   /// Bytes accounted to the session; 0 if it was removed.
   std::size_t bytes(const Session& session) const;
   std::size_t size() const;
@@ -63,6 +74,7 @@ class SessionTable {
     SessionLife life;
     std::string owner;  ///< a secret: compared, never shown
     std::shared_ptr<SessionRates> rates;
+    std::shared_ptr<SessionWatch> watch;
   };
 
   const Entry& checked(const std::string& id, const std::string& token) const;
@@ -76,6 +88,7 @@ class SessionTable {
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
   std::size_t total_bytes_ = 0;
+  int made_ = 0;  ///< sessions asked for so far
 };
 
 }  // namespace holdfast::server
