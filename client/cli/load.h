@@ -7,11 +7,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/cli/access_options.h"
+
 namespace holdfast::cli {
 
 /// A load on a server.
 struct LoadOptions {
   std::string server;             ///< host:port or unix:PATH; empty = a server in this process
+  Access access;                  ///< what that server asks for
   int threads = 0;                ///< of the server in this process; 0 = one for each core
   std::string frames = "fence";   ///< a built-in scene, a scene file, or the folder of a sequence
   int width = 480, height = 270;  ///< pixels; a sequence has its own

@@ -78,6 +78,7 @@ void add_load(CLI::App& app) {
   command.add_option("--threads", options.threads, "of the server in this process")
       ->check(CLI::Range(1, 1024))
       ->excludes(server);
+  add_access_options(command, server, options.access);
   command.add_flag("--quiet", args->quiet, "no summary");
   command.add_option("--json", args->json, "file for the machine-readable result");
   command.callback([args] {
