@@ -1,12 +1,14 @@
 // Limits on how fast a session may send: the bucket by itself, and what a client sees of it.
 #include "server/session_rates.h"
 
+#include <fstream>
 #include <random>
 
 #include "server/error.h"
 #include "server/session_table.h"
 #include "tests/service/raw_client.h"
 #include "tests/service/served.h"
+#include "tests/service/server_process.h"
 
 namespace holdfast {
 namespace {
@@ -96,6 +98,34 @@ TEST(SessionTable, CountsTheSessionsOfEachBearerToken) {
   for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(table.create(config)) << "no token is asked for";
   table.remove(first->id(), first->token());
   EXPECT_NO_THROW(table.create(config, "one"));
+}
+
+TEST(BearerToken, WithItsNumberOfSessionsIsRefusedOverTheWireWithTheNameOfTheLimit) {
+  const test::SocketAddress place;
+  server::ServerConfig config = test::server_config(1);
+  config.token_file = (place.directory() / "tokens").string();
+  config.limits.max_sessions_per_token = 1;
+  std::ofstream(config.token_file) << "one\ntwo\n";
+  const server::Server server(config);
+  test::RawClient client(server.address());
+  v1::CreateSessionRequest request;
+  client::write_create_request(test::session_options(server, test::small_config()), request);
+  const auto quota_of = [&](const std::string& token) {
+    grpc::ClientContext context;
+    context.AddMetadata("authorization", "Bearer " + token);
+    v1::CreateSessionResponse response;
+    const grpc::Status status = client.sessions->CreateSession(&context, request, &response);
+    if (status.ok()) return std::string("none");
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    const auto& trailing = context.GetServerTrailingMetadata();
+    EXPECT_EQ(trailing.count("holdfast-retry-after-ms"), 1u);
+    const auto found = trailing.find("holdfast-quota");
+    return found == trailing.end() ? "unnamed"
+                                   : std::string(found->second.data(), found->second.size());
+  };
+  EXPECT_EQ(quota_of("one"), "none");
+  EXPECT_EQ(quota_of("one"), "max-sessions-per-token");
+  EXPECT_EQ(quota_of("two"), "none");
 }
 
 class Rates : public ::testing::Test {
