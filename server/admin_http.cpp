@@ -33,6 +33,16 @@ int reply_page(mg_connection* connection) {
   return reply(connection, 200, kHtml, live_page(nonce), live_page_policy(nonce));
 }
 
+/// True if the request names this server by address. A name may be one that a hostile page has made
+/// to lead here (DNS rebinding), so that the browser of an operator would let it read the answer.
+bool named_by_address(const mg_connection* connection) {
+  const char* const header = mg_get_header(connection, "Host");
+  const std::string_view host = header ? header : "";
+  const std::string_view name = host.substr(0, host.find(':'));
+  return name == "localhost" ||
+         (!name.empty() && name.find_first_not_of("0123456789.") == name.npos);
+}
+
 /// N of /preview/N.png; 0 for any other path.
 int preview_ordinal(std::string_view path) {
   constexpr std::string_view kBefore = "/preview/", kAfter = ".png";
@@ -82,6 +92,8 @@ class AdminHttp::Impl {
       return pages.ready() ? reply(connection, 200, kText, "ready\n")
                            : reply(connection, 503, kText, "draining\n");
     if (path == "/metrics") return reply(connection, 200, kMetrics, pages.metrics());
+    if (!named_by_address(connection))
+      return reply(connection, 403, kText, "sessions are shown by the address of this server\n");
     if (path == "/") return reply_page(connection);
     if (path == "/sessions.json")
       return reply(connection, 200, "application/json", pages.sessions());

@@ -252,6 +252,20 @@ TEST_F(LivePage, AllowsItsOwnScriptAlone) {
   EXPECT_EQ(first.find("https://"), std::string::npos);
 }
 
+TEST_F(LivePage, IsNotReadByAPageWhoseNameWasMadeToLeadHere) {
+  start(true);
+  const auto status = [&](const char* path, const char* host) {
+    return test::http(server->admin_address(), std::string("GET ") + path, host).substr(9, 3);
+  };
+  for (const char* path : {"/", "/sessions.json", "/preview/1.png"})
+    for (const char* host :
+         {"hostile.example", "hostile.example:9464", "127.0.0.1.hostile.example"})
+      EXPECT_EQ(status(path, host), "403") << path << " by " << host;
+  for (const char* host : {"localhost:9464", "127.0.0.1:9464", "127.0.0.1"})
+    EXPECT_EQ(status("/sessions.json", host), "200") << host;
+  EXPECT_EQ(status("/healthz", "prober.example"), "200") << "it tells nothing of sessions";
+}
+
 TEST_F(LivePage, ShowsTheLastFrameWhereThatIsEnabled) {
   start(true);
   EXPECT_EQ(get("/preview/1.png").find("HTTP/1.1 404"), 0u) << "there is none yet";
