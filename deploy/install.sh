@@ -5,10 +5,11 @@ set -euo pipefail
 
 usage() {
   cat <<'USAGE'
-usage: deploy/install.sh [--tools] [--list | --check] [--help]
+usage: deploy/install.sh [--tools] [--tests] [--list | --check] [--help]
 
   (no option)  install the missing packages among those that build and test Holdfast
   --tools      also those for checking the source: clang-format, clang-tidy, shellcheck
+  --tests      also those for the tests that are skipped without them: other languages, a browser
   --list       print the packages and do nothing
   --check      print the missing packages and do nothing; exit 1 if there are any
 USAGE
@@ -24,13 +25,15 @@ packages=(
   libopenexr-dev libopenimageio-dev openimageio-tools libembree-dev libglm-dev libtbb-dev
   # its headers folder is named by the CMake target OpenImageIO::OpenImageIO
   libopencv-core-dev
-  # codecs, command line, JSON
-  liblz4-dev libzstd-dev libcli11-dev nlohmann-json3-dev
+  # codecs, pictures of the live page, command line, JSON
+  liblz4-dev libzstd-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
   # tests and benchmarks
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 # What checks the source; tests/format.sh, tests/tidy.sh.
 tools=(clang-format clang-tidy shellcheck)
+# What tests of clients and pages use: tests/service/python_client_test.py, live_page_test.py.
+tests=(python3-grpcio python3-protobuf chromium)
 
 fail() {
   echo "install.sh: $*" >&2
@@ -41,6 +44,7 @@ mode=install
 while (($#)); do
   case $1 in
     --tools) packages+=("${tools[@]}") ;;
+    --tests) packages+=("${tests[@]}") ;;
     --list) mode=list ;;
     --check) mode=check ;;
     -h | --help)

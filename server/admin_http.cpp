@@ -2,24 +2,55 @@
 
 #include <civetweb.h>
 
+#include <charconv>
 #include <cstring>
 
 #include "core/frame/error.h"
+#include "server/live_page.h"
+#include "server/random_token.h"
 
 namespace holdfast::server {
 namespace {
 
 constexpr const char* kText = "text/plain; charset=utf-8";
+constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kMetrics = "text/plain; version=0.0.4; charset=utf-8";  // Prometheus
 
-int reply(mg_connection* connection, int status, const char* type, const std::string& body) {
+int reply(mg_connection* connection, int status, const char* type, const std::string& body,
+          const std::string& policy = "default-src 'none'") {
   mg_printf(
       connection,
       "HTTP/1.1 %d %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\nCache-Control: no-store\r\n"
-      "Connection: close\r\n\r\n",
-      status, mg_get_response_code_text(connection, status), type, body.size());
+      "Content-Security-Policy: %s\r\nX-Content-Type-Options: nosniff\r\n"
+      "Referrer-Policy: no-referrer\r\nConnection: close\r\n\r\n",
+      status, mg_get_response_code_text(connection, status), type, body.size(), policy.c_str());
   mg_write(connection, body.data(), body.size());
   return status;
+}
+
+int reply_page(mg_connection* connection) {
+  const std::string nonce = random_hex(16);
+  return reply(connection, 200, kHtml, live_page(nonce), live_page_policy(nonce));
+}
+
+/// True if the request names this server by address. A name may be one that a hostile page has made
+/// to lead here (DNS rebinding), so that the browser of an operator would let it read the answer.
+bool named_by_address(const mg_connection* connection) {
+  const char* const header = mg_get_header(connection, "Host");
+  const std::string_view host = header ? header : "";
+  const std::string_view name = host.substr(0, host.find(':'));
+  return name == "localhost" ||
+         (!name.empty() && name.find_first_not_of("0123456789.") == name.npos);
+}
+
+/// N of /preview/N.png; 0 for any other path.
+int preview_ordinal(std::string_view path) {
+  constexpr std::string_view kBefore = "/preview/", kAfter = ".png";
+  if (!path.starts_with(kBefore) || !path.ends_with(kAfter)) return 0;
+  int ordinal = 0;
+  const char* const end = path.data() + path.size() - kAfter.size();
+  const auto read = std::from_chars(path.data() + kBefore.size(), end, ordinal);
+  return read.ec == std::errc{} && read.ptr == end ? ordinal : 0;
 }
 
 }  // namespace
@@ -27,11 +58,11 @@ int reply(mg_connection* connection, int status, const char* type, const std::st
 class AdminHttp::Impl {
  public:
   Impl(const std::string& listen, AdminPages shown) : pages(std::move(shown)) {
-    // Two threads: a probe is answered while metrics are read.
+    // A probe is answered while others read metrics or look at the live page.
     const char* options[] = {"listening_ports",
                              listen.c_str(),
                              "num_threads",
-                             "2",
+                             "4",
                              "request_timeout_ms",
                              "5000",
                              "enable_directory_listing",
@@ -61,7 +92,16 @@ class AdminHttp::Impl {
       return pages.ready() ? reply(connection, 200, kText, "ready\n")
                            : reply(connection, 503, kText, "draining\n");
     if (path == "/metrics") return reply(connection, 200, kMetrics, pages.metrics());
-    return reply(connection, 404, kText, "there are /healthz, /readyz and /metrics\n");
+    if (!named_by_address(connection))
+      return reply(connection, 403, kText, "sessions are shown by the address of this server\n");
+    if (path == "/") return reply_page(connection);
+    if (path == "/sessions.json")
+      return reply(connection, 200, "application/json", pages.sessions());
+    if (const int ordinal = preview_ordinal(path); ordinal > 0)
+      if (const std::string picture = pages.preview(ordinal); !picture.empty())
+        return reply(connection, 200, "image/png", picture);
+    return reply(connection, 404, kText,
+                 "there are /, /sessions.json, /healthz, /readyz and /metrics\n");
   }
 
   const AdminPages pages;

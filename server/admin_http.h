@@ -10,10 +10,13 @@ namespace holdfast::server {
 struct AdminPages {
   std::function<bool()> ready;
   std::function<std::string()> metrics;
+  std::function<std::string()> sessions;    ///< JSON
+  std::function<std::string(int)> preview;  ///< PNG of the session of that ordinal, or empty
 };
 
 /// A small HTTP server for probes and metrics, apart from the service: GET /healthz (200 while the
-/// process works), /readyz (200, or 503 once new sessions are refused), /metrics (Prometheus text).
+/// process works), /readyz (200, or 503 once new sessions are refused), /metrics (Prometheus text),
+/// / (the live page) with /sessions.json and /preview/ORDINAL.png.
 class AdminHttp {
  public:
   /// Listens on `address`, host:port with a numeric IPv4 host (port 0 = any free one). Throws

@@ -19,6 +19,9 @@ struct SessionLimits {
   int max_dimension = kMaxDimension;                     ///< pixels, width and height of a frame
   std::chrono::milliseconds linger{30000};  ///< a session without a stream is kept this long
   int credits = 3;                          ///< frames in flight for each session, >= 1
+  double max_frames_per_second = 0;         ///< of each session; 0 = no limit
+  std::size_t max_bytes_per_second = 0;     ///< that each session may send; 0 = no limit
+  std::size_t max_sessions_per_token = 0;   ///< made with the same bearer token; 0 = no limit
 };
 
 /// Encryption of the service; off unless `certificate` is set. All are files in PEM form, read
@@ -33,6 +36,7 @@ struct TlsConfig {
 struct ServerConfig {
   std::string listen = "127.0.0.1:50051";  ///< host:port (port 0 = any free one) or unix:PATH
   std::string admin;                       ///< host:port of the admin port; empty = none
+  bool admin_previews = false;             ///< the admin port shows pictures of sessions
   bool allow_remote = false;               ///< addresses beyond this machine may be listened on
   int threads = 0;                         ///< threads that filter; 0 = one for each core
   std::string log_level = "info";          ///< trace, debug, info, warn, error, off
@@ -40,6 +44,8 @@ struct ServerConfig {
   std::chrono::milliseconds keepalive{10000};         ///< a silent peer is asked after this
   std::chrono::milliseconds keepalive_timeout{5000};  ///< and lost if it does not answer in this
   std::size_t max_streams = 256;                      ///< open streams, of all clients
+  std::chrono::milliseconds hello_timeout{10000};     ///< for Hello in a new stream; 0 = none
+  std::chrono::milliseconds frame_timeout{30000};     ///< from FrameBegin to FrameEnd; 0 = none
   TlsConfig tls;
   std::string token_file;  ///< bearer tokens of clients, one a line; empty = none asked for
   SessionLimits limits;

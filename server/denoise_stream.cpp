@@ -34,8 +34,10 @@ void DenoiseStream::OnReadDone(bool ok) {
     if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
   } else if (!read_all_ && !broken_) {
     try {
+      state_.metrics.received_bytes(request_.ByteSizeLong());
       const bool more = handle_request();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
+      if (rates_) hold_reading(rates_->count_bytes(request_.ByteSizeLong(), Clock::now()));
       if (more) read_on();
     } catch (...) {
       refuse(std::current_exception());
@@ -67,18 +69,27 @@ bool DenoiseStream::handle_request() {
     throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
                      "must be inside a frame", "outside");
   if (kind == Message::kPlaneChunk)
-    assembler_->add(request_.plane_chunk());
+    decode(request_.plane_chunk());
   else
     post(assembler_->end(request_.frame_end()));
   return true;
 }
 
+void DenoiseStream::decode(const v1::PlaneChunk& chunk) {
+  const Clock::time_point start = Clock::now();
+  assembler_->add(chunk);
+  open_->decode += Clock::now() - start;
+}
+
 void DenoiseStream::handle_hello(const v1::Hello& hello) {
   const SessionTable::Attached attached = state_.sessions.attach(hello.session_id(), hello.token());
   session_ = attached.session;
+  rates_ = attached.rates;
+  watch_ = attached.watch;
   hold_ = attached.hold;
   heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
+  deadlines_.greeted();
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
@@ -95,9 +106,33 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
 bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
   if (assembler_->open()) post(assembler_->abandon("another FrameBegin"));
   FrameSlot* const slot = free_slot();
-  stalled_ = slot == nullptr;
-  if (slot) assembler_->begin(begin, *slot);
-  return slot != nullptr;
+  const auto wait = slot ? rates_->admit_frame(Clock::now()) : SessionRates::Duration::zero();
+  stalled_ = !slot || wait > SessionRates::Duration::zero();
+  if (!stalled_) {
+    assembler_->begin(begin, *slot);
+    open_ = slot;
+    slot->decode = slot->encode = {};
+    deadlines_.frame_begun(slot->begun);
+  } else if (slot) {
+    free_.push_back(slot);
+    hold_reading(wait);
+  }
+  return !stalled_;
+}
+
+/// Nothing is read for that long: the windows of HTTP/2 fill, and the client waits.
+void DenoiseStream::hold_reading(SessionRates::Duration time) {
+  if (time <= SessionRates::Duration::zero()) return;
+  const Clock::time_point now = Clock::now();
+  read_due_ = std::max(read_due_.value_or(now), now + time);
+  deadlines_.pause(now);
+}
+
+/// The FrameBegin that was held up tries again.
+void DenoiseStream::begin_stalled() {
+  if (!stalled_) return;
+  stalled_ = false;
+  if (!read_all_ && !broken_) handle_frame_begin(request_.frame_begin());
 }
 
 FrameSlot* DenoiseStream::free_slot() {
@@ -111,7 +146,7 @@ FrameSlot* DenoiseStream::free_slot() {
 }
 
 void DenoiseStream::read_on() {
-  if (reading_ || stalled_ || read_all_ || broken_ || finished_) return;
+  if (reading_ || stalled_ || read_due_ || read_all_ || broken_ || finished_) return;
   reading_ = true;
   StartRead(&request_);
 }
@@ -119,6 +154,7 @@ void DenoiseStream::read_on() {
 // --- filtering -----------------------------------------------------------------------------------
 
 void DenoiseStream::post(FrameSlot& slot) {
+  deadlines_.frame_ended();
   if (!slot.error) ++waiting_;
   state_.scheduler.post(session_->strand(),
                         [self = shared_from_this(), &slot] { self->filter(slot); });
@@ -143,6 +179,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
     }
   slot.answered = Clock::now();
   if (wanted) log_frame(slot);
+  if (wanted && state_.config.admin_previews) show_frame(slot);
   if (wanted) state_.metrics.filtered(slot);
   std::unique_lock lock(mutex_);
   if (broken_) {
@@ -163,6 +200,15 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
                       slot.frame.index, slot.answer->report.ms, slot.answer->report.history_reset);
 }
 
+/// For the live page, if somebody looks at it.
+void DenoiseStream::show_frame(const FrameSlot& slot) const try {
+  const Clock::time_point now = Clock::now();
+  if (slot.error || slot.repeated || slot.answer->dropped || !watch_->preview().wanted(now)) return;
+  watch_->preview().put(preview(slot.frame, slot.answer->results), now);
+} catch (const std::exception& error) {  // a picture for onlookers costs no frame
+  state_.log->warn("event=no_preview session={} error=\"{}\"", session_->id(), error.what());
+}
+
 // --- writing -------------------------------------------------------------------------------------
 
 void DenoiseStream::OnWriteDone(bool ok) {
@@ -179,7 +225,9 @@ void DenoiseStream::OnWriteDone(bool ok) {
 void DenoiseStream::write_on() {
   if (writing_ || broken_ || finished_) return;
   writing_ = next_response();
-  if (writing_) StartWrite(&response_);
+  if (!writing_) return;
+  state_.metrics.sent_bytes(response_.ByteSizeLong());
+  StartWrite(&response_);
 }
 
 /// Fills `response_`; false if there is nothing to send.
@@ -191,24 +239,33 @@ bool DenoiseStream::next_response() {
   }
   while (!sending_.empty()) {
     if (!sender_) sender_.emplace(*sending_.front(), session_->config());
-    if (sender_->next(response_)) return true;
+    if (encode(*sending_.front())) return true;
     sender_.reset();
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
-    state_.metrics.sent(std::chrono::duration<double>(Clock::now() - sent.answered).count());
+    const Clock::time_point now = Clock::now();
+    state_.metrics.sent(sent, preset_, now);
+    watch_->sent(sent, preset_, now);
     release(sent);
   }
   return false;
+}
+
+/// Fills `response_` with the next message of the answer; false if there is none left.
+bool DenoiseStream::encode(FrameSlot& slot) {
+  const Clock::time_point start = Clock::now();
+  const bool more = sender_->next(response_);
+  slot.encode += Clock::now() - start;
+  if (more && response_.has_frame_result()) preset_ = response_.frame_result().preset();
+  return more;
 }
 
 /// Makes the slot free and lets a waiting FrameBegin have it.
 void DenoiseStream::release(FrameSlot& slot) {
   slot.answer.reset();
   free_.push_back(&slot);
-  if (!stalled_) return;
-  stalled_ = false;
-  if (read_all_ || broken_) return;
-  handle_frame_begin(request_.frame_begin());
+  if (!stalled_ || read_due_) return;
+  begin_stalled();
   read_on();
 }
 
@@ -237,6 +294,24 @@ void DenoiseStream::yield(SessionLife::Hold hold) {
         RefusedError(Refusal::kTakenOver, "a newer stream has the session")));
   broken_ = true;
   if (!writing_) drop_unsent();
+  unlock_and_finish(lock);
+}
+
+void DenoiseStream::tick(StreamDeadlines::TimePoint now) {
+  std::unique_lock lock(mutex_);
+  if (read_due_ && now >= *read_due_) {
+    read_due_.reset();
+    deadlines_.resume(now);
+    begin_stalled();
+    read_on();
+  }
+  if (deadlines_.passed(now) && !read_all_ && !broken_) {
+    const bool in_frame = assembler_ && assembler_->open();
+    if (in_frame) post(assembler_->abandon("nothing within the limit frame-timeout-ms"));
+    refuse(std::make_exception_ptr(RefusedError(
+        Refusal::kTooSlow, in_frame ? "a frame was not whole within the limit frame-timeout-ms"
+                                    : "no Hello came within the limit hello-timeout-ms")));
+  }
   unlock_and_finish(lock);
 }
 

@@ -14,6 +14,7 @@
 #include "server/frame_assembler.h"
 #include "server/result_sender.h"
 #include "server/service_state.h"
+#include "server/stream_deadlines.h"
 
 namespace holdfast::server {
 
@@ -42,6 +43,9 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void close(const grpc::Status& status);
   /// Ends the stream if `hold` on its session is newer than its own: what is in flight is dropped.
   void yield(SessionLife::Hold hold);
+  /// Ends the stream if its client is silent or slow beyond the limits, and reads on where it was
+  /// held up for a limit on rates; called from time to time.
+  void tick(StreamDeadlines::TimePoint now);
   /// Empty before Hello.
   std::string session_id() const;
 
@@ -51,19 +55,26 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void OnDone() override;
 
  private:
-  explicit DenoiseStream(ServiceState& state) : state_(state) {}
+  explicit DenoiseStream(ServiceState& state)
+      : state_(state),
+        deadlines_(state.config.hello_timeout, state.config.frame_timeout,
+                   StreamDeadlines::TimePoint::clock::now()) {}
 
   // All of these are called with the mutex held.
   bool handle_request();
   void handle_hello(const v1::Hello& hello);
   bool handle_frame_begin(const v1::FrameBegin& begin);
   FrameSlot* free_slot();
+  void hold_reading(SessionRates::Duration time);
+  void begin_stalled();
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
   bool next_response();
   void release(FrameSlot& slot);
   void drop_unsent();
+  void decode(const v1::PlaneChunk& chunk);
+  bool encode(FrameSlot& slot);
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
@@ -73,25 +84,32 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   /// Takes the mutex off and calls Finish if everything is done.
   void unlock_and_finish(std::unique_lock<std::mutex>& lock);
   void log_frame(const FrameSlot& slot) const;
+  void show_frame(const FrameSlot& slot) const;
 
   ServiceState& state_;
   std::shared_ptr<DenoiseStream> self_;
 
   mutable std::mutex mutex_;
+  StreamDeadlines deadlines_;
   std::shared_ptr<Session> session_;
   SessionLife::Hold hold_ = 0;  ///< on session_
   bool heir_ = false;           ///< an older stream of the session has to be ended
+  std::shared_ptr<SessionWatch> watch_;
+  std::shared_ptr<SessionRates> rates_;
+  std::optional<SessionRates::TimePoint> read_due_;  ///< nothing is read before, for `rates_`
   std::optional<FrameAssembler> assembler_;
+  FrameSlot* open_ = nullptr;  ///< of the frame that the assembler has open
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
   std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
   std::optional<ResultSender> sender_;
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
+  std::string preset_;                       ///< of the answer that is being sent
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
   int waiting_ = 0;        ///< whole good frames that wait to be filtered
   bool reading_ = false;   ///< a read is under way
-  bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot
+  bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot or for its turn
   bool writing_ = false;   ///< a write is under way
   bool read_all_ = false;  ///< the client has ended its side, or nothing more is to be read
   bool closing_ = false;   ///< ends after the frame that is being read

@@ -14,6 +14,7 @@ enum class Refusal {
   kLimit,            ///< a limit of the server is reached
   kDraining,         ///< the server is shutting down
   kUnauthenticated,  ///< the bearer token is missing or not known
+  kTooSlow,          ///< what was due did not come in time
 };
 
 /// The limit that a request met.

@@ -18,7 +18,8 @@ struct FrameSlot {
   std::shared_ptr<const Answer> answer;  ///< null if there is an error
   bool repeated = false;                 ///< `answer` is that of an earlier time
   std::optional<v1::FrameError> error;
-  TimePoint begun, ended, started, answered;  ///< FrameBegin, FrameEnd, filtering
+  TimePoint begun, ended, started, answered;    ///< FrameBegin, FrameEnd, filtering
+  std::chrono::nanoseconds decode{}, encode{};  ///< inside receiving and sending: bytes <-> planes
 };
 
 }  // namespace holdfast::server

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include <prometheus/text_serializer.h>
@@ -25,6 +26,10 @@ auto& gauge(prometheus::Registry& registry, const char* name, const char* help) 
   return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
 }
 
+auto& counter(prometheus::Registry& registry, const char* name, const char* help) {
+  return counters(registry, name, help).Add({});
+}
+
 double seconds(FrameSlot::TimePoint a, FrameSlot::TimePoint b) {
   return std::chrono::duration<double>(b - a).count();
 }
@@ -44,6 +49,7 @@ const char* name_of(Refusal reason) {
     case Refusal::kLimit: return "limit";
     case Refusal::kDraining: return "draining";
     case Refusal::kUnauthenticated: return "unauthenticated";
+    case Refusal::kTooSlow: return "too_slow";
   }
   return "failure";
 }
@@ -64,18 +70,26 @@ const char* name_of(ResetReason reason) {
 Metrics::Metrics()
     : registry_(std::make_shared<prometheus::Registry>()),
       frames_(counters(*registry_, "holdfast_frames_total", "Frames answered, by result")),
+      presets_(counters(*registry_, "holdfast_preset_frames_total",
+                        "Filtered frames sent, by the preset that filtered them")),
       resets_(counters(*registry_, "holdfast_history_resets_total",
                        "Frames whose history started anew, by reason")),
       refusals_(counters(*registry_, "holdfast_refusals_total",
                          "Calls and streams that were refused, by reason")),
       ends_(counters(*registry_, "holdfast_session_ends_total", "Sessions that ended, by reason")),
+      received_(counter(*registry_, "holdfast_received_bytes_total",
+                        "Bytes of the messages that streams brought")),
+      sent_(counter(*registry_, "holdfast_sent_bytes_total",
+                    "Bytes of the messages that streams took back")),
       stages_(prometheus::BuildHistogram()
                   .Name("holdfast_stage_seconds")
                   .Help("Time of one frame in one stage of the server")
                   .Register(*registry_)),
       receive_(stages_.Add({{"stage", "receive"}}, buckets())),
+      decode_(stages_.Add({{"stage", "decode"}}, buckets())),
       wait_(stages_.Add({{"stage", "wait"}}, buckets())),
       filter_(stages_.Add({{"stage", "filter"}}, buckets())),
+      encode_(stages_.Add({{"stage", "encode"}}, buckets())),
       send_(stages_.Add({{"stage", "send"}}, buckets())),
       sessions_(gauge(*registry_, "holdfast_sessions", "Sessions that exist")),
       streams_(gauge(*registry_, "holdfast_streams", "Open streams")),
@@ -85,15 +99,17 @@ Metrics::Metrics()
   // Series exist from the start, so that a rate over them does not miss the first event.
   for (const char* result : {"ok", "repeated", "dropped", "invalid", "failed"})
     frames_.Add({{"result", result}});
+  for (const std::string& preset : preset_names()) presets_.Add({{"preset", preset}});
   for (const char* reason : {"first", "cut", "epoch", "failure"}) resets_.Add({{"reason", reason}});
   for (const char* reason : {"invalid", "unknown_session", "wrong_token", "taken_over", "limit",
-                             "draining", "unauthenticated", "failure"})
+                             "draining", "unauthenticated", "too_slow", "failure"})
     refusals_.Add({{"reason", reason}});
   for (const char* reason : {"deleted", "expired"}) ends_.Add({{"reason", reason}});
 }
 
 void Metrics::filtered(const FrameSlot& slot) {
   receive_.Observe(seconds(slot.begun, slot.ended));
+  decode_.Observe(std::chrono::duration<double>(slot.decode).count());
   wait_.Observe(seconds(slot.ended, slot.started));
   if (slot.error) {
     const bool invalid = slot.error->code() == v1::FRAME_ERROR_CODE_INVALID_FRAME;
@@ -108,7 +124,14 @@ void Metrics::filtered(const FrameSlot& slot) {
     resets_.Add({{"reason", name_of(slot.answer->reset)}}).Increment();
 }
 
-void Metrics::sent(double time_s) { send_.Observe(time_s); }
+void Metrics::sent(const FrameSlot& slot, const std::string& preset, FrameSlot::TimePoint now) {
+  encode_.Observe(std::chrono::duration<double>(slot.encode).count());
+  send_.Observe(seconds(slot.answered, now));
+  if (slot.error || slot.repeated || slot.answer->dropped) return;
+  const auto& names = preset_names();  // no series for a name that is none of these
+  if (std::find(names.begin(), names.end(), preset) != names.end())
+    presets_.Add({{"preset", preset}}).Increment();
+}
 
 void Metrics::refused(std::exception_ptr error) {
   const char* reason = "failure";

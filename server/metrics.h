@@ -18,11 +18,13 @@ namespace holdfast::server {
 /// number of series is fixed. Every function may be called from any thread.
 ///
 ///   holdfast_frames_total{result}         ok, repeated, dropped, invalid, failed
-///   holdfast_stage_seconds{stage}         receive, wait, filter, send: histograms
+///   holdfast_preset_frames_total{preset}  filtered frames; presets of the core
+///   holdfast_stage_seconds{stage}         receive, decode, wait, filter, encode, send: histograms
+///   holdfast_received_bytes_total, holdfast_sent_bytes_total  messages of streams
 ///   holdfast_history_resets_total{reason} first, cut, epoch, failure
 ///   holdfast_refusals_total{reason}       invalid, unknown_session, wrong_token, taken_over,
 ///   limit,
-///                                         draining, unauthenticated, failure
+///                                         draining, unauthenticated, too_slow, failure
 ///   holdfast_session_ends_total{reason}   deleted, expired
 ///   holdfast_sessions, holdfast_streams, holdfast_session_bytes, holdfast_resident_bytes,
 ///   holdfast_ready                        at the time of reading
@@ -32,8 +34,11 @@ class Metrics {
 
   /// A frame has left the filter.
   void filtered(const FrameSlot& slot);
-  /// Its answer has been sent.
-  void sent(double seconds);
+  /// Its answer, which names the preset that filtered it, has been sent.
+  void sent(const FrameSlot& slot, const std::string& preset, FrameSlot::TimePoint now);
+  /// Bytes of one message of a stream.
+  void received_bytes(std::size_t bytes) { received_.Increment(static_cast<double>(bytes)); }
+  void sent_bytes(std::size_t bytes) { sent_.Increment(static_cast<double>(bytes)); }
   /// A call or stream was refused.
   void refused(std::exception_ptr error);
   void session_ended(const char* reason, int count);
@@ -51,9 +56,10 @@ class Metrics {
   using Gauges = prometheus::Family<prometheus::Gauge>;
 
   const std::shared_ptr<prometheus::Registry> registry_;
-  Counters &frames_, &resets_, &refusals_, &ends_;
+  Counters &frames_, &presets_, &resets_, &refusals_, &ends_;
+  prometheus::Counter &received_, &sent_;
   prometheus::Family<prometheus::Histogram>& stages_;
-  prometheus::Histogram &receive_, &wait_, &filter_, &send_;
+  prometheus::Histogram &receive_, &decode_, &wait_, &filter_, &encode_, &send_;
   prometheus::Gauge &sessions_, &streams_, &session_bytes_, &resident_bytes_, &ready_;
 };
 

@@ -54,7 +54,11 @@ void add_options(CLI::App& app, ServerConfig& config) {
   app.allow_config_extras(CLI::config_extras_mode::error);
   Knobs knobs(app);
   knobs.value("--listen", config.listen, "host:port (port 0 = any free one) or unix:PATH");
-  knobs.value("--admin", config.admin, "host:port for /healthz, /readyz, /metrics; empty = none");
+  knobs.value("--admin", config.admin,
+              "host:port of the live page, /healthz, /readyz and /metrics; empty = none");
+  app.add_flag("--admin-previews", config.admin_previews,
+               "the live page also shows the last frame of each session")
+      ->envname(environment_name("--admin-previews"));
   app.add_flag("--allow-remote", config.allow_remote,
                "addresses that other machines can reach may be listened on")
       ->envname(environment_name("--allow-remote"));
@@ -72,6 +76,14 @@ void add_options(CLI::App& app, ServerConfig& config) {
   knobs.bytes("--max-total-bytes", config.limits.max_total_bytes, "memory of all sessions");
   knobs.value("--credits", config.limits.credits, "frames in flight for each session")
       ->check(CLI::Range(1, 16));
+  knobs
+      .value("--max-frames-per-second", config.limits.max_frames_per_second,
+             "of each session, beyond which its stream is read no faster; 0 = no limit")
+      ->check(CLI::Range(0.0, 100000.0));
+  knobs.bytes("--max-bytes-per-second", config.limits.max_bytes_per_second,
+              "that each session may send, in the same way; 0 = no limit");
+  knobs.value("--max-sessions-per-token", config.limits.max_sessions_per_token,
+              "made with the same bearer token; 0 = no limit");
   knobs.milliseconds("--linger-ms", config.limits.linger,
                      "how long a session is kept without a stream");
   knobs.milliseconds("--drain-ms", config.drain_deadline,
@@ -79,6 +91,11 @@ void add_options(CLI::App& app, ServerConfig& config) {
   knobs.milliseconds("--keepalive-ms", config.keepalive, "silence after which a peer is asked");
   knobs.milliseconds("--keepalive-timeout-ms", config.keepalive_timeout,
                      "silence after that for which it is lost");
+  knobs.milliseconds("--hello-timeout-ms", config.hello_timeout,
+                     "for the first message of a stream, after which it is ended; 0 = none");
+  knobs.milliseconds("--frame-timeout-ms", config.frame_timeout,
+                     "for a frame that has begun, after which it fails and its stream is ended; "
+                     "0 = none");
   knobs.value("--tls-cert", config.tls.certificate, "PEM file, chain of the server");
   knobs.value("--tls-key", config.tls.key, "PEM file, its private key");
   knobs.value("--tls-client-ca", config.tls.client_ca,

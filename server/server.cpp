@@ -15,6 +15,7 @@
 #include "server/listen_address.h"
 #include "server/log.h"
 #include "server/session_service.h"
+#include "server/sessions_json.h"
 #include "server/version.h"
 
 namespace holdfast::server {
@@ -23,7 +24,8 @@ namespace {
 constexpr int kHttp2FrameBytes = 1 << 20;  // fewer, larger frames: less CPU for large messages
 constexpr std::chrono::seconds kExpiryPeriod{1};
 
-constexpr int kMinPingMs = 5000;  // between a client's own pings
+constexpr std::chrono::milliseconds kRatePeriod{5};  // how exactly limits on rates are kept
+constexpr int kMinPingMs = 5000;                     // between a client's own pings
 
 int milliseconds(std::chrono::milliseconds time) { return static_cast<int>(time.count()); }
 
@@ -31,6 +33,17 @@ const ServerConfig& checked(const ServerConfig& config) {
   check_config(config);
   check_listen_address(config.listen);
   return config;
+}
+
+/// How often streams look at the clock: often enough that no limit is overrun by more than a
+/// quarter, nor by more than a second.
+std::chrono::milliseconds tick_period(const ServerConfig& config) {
+  std::chrono::milliseconds period{1000};
+  for (const auto limit : {config.hello_timeout, config.frame_timeout})
+    if (limit.count() > 0) period = std::min(period, limit / 4);
+  const SessionLimits& limits = config.limits;
+  if (limits.max_frames_per_second > 0 || limits.max_bytes_per_second > 0) period = kRatePeriod;
+  return std::max(period, std::chrono::milliseconds(5));
 }
 
 /// Calls `work` once a period on a thread of its own, until destroyed.
@@ -70,6 +83,8 @@ class Server::Impl {
     expiry_.emplace(kExpiryPeriod, [this] {
       if (const int ended = state_.sessions.expire(); ended > 0) expired(ended);
     });
+    ticks_.emplace(tick_period(config),
+                   [this] { state_.streams.tick(std::chrono::steady_clock::now()); });
     if (!config.admin.empty()) start_admin();
   }
 
@@ -107,10 +122,23 @@ class Server::Impl {
       return state_.metrics.text(
           {state_.sessions.size(), state_.streams.size(), state_.sessions.total_bytes(), ready()});
     };
-    admin_.emplace(state_.config.admin, AdminPages{ready, metrics});
+    const auto sessions = [this] {
+      return sessions_json(state_, std::chrono::steady_clock::now());
+    };
+    const auto preview = [this](int ordinal) { return preview_png(ordinal); };
+    admin_.emplace(state_.config.admin, AdminPages{ready, metrics, sessions, preview});
     state_.log->info("event=admin_listening address={}", admin_->address());
   }
 
+  std::string preview_png(int ordinal) {
+    if (!state_.config.admin_previews) return {};
+    for (const SessionTable::Listed& listed : state_.sessions.list()) {
+      if (listed.watch->ordinal() != ordinal) continue;
+      const Rgb8 picture = listed.watch->preview().look(std::chrono::steady_clock::now());
+      return picture.values.empty() ? std::string() : png(picture);
+    }
+    return {};
+  }
   void start() {
     const std::string& listen = state_.config.listen;
     grpc::EnableDefaultHealthCheckService(true);
@@ -124,6 +152,9 @@ class Server::Impl {
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, milliseconds(state_.config.keepalive));
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS,
                                milliseconds(state_.config.keepalive_timeout));
+    if (state_.config.hello_timeout.count() > 0)  // connections that say nothing at all
+      builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS,
+                                 milliseconds(state_.config.hello_timeout));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinPingMs);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
     // The probe finds the window of a long link; a unix socket has none to find.
@@ -150,7 +181,7 @@ class Server::Impl {
   DenoiseService denoise_service_;
   std::string address_;
   std::unique_ptr<grpc::Server> server_;
-  std::optional<Timer> expiry_;
+  std::optional<Timer> expiry_, ticks_;
   std::optional<AdminHttp> admin_;
 };
 

@@ -32,6 +32,7 @@ struct ServiceState {
   StreamRegistry streams;
   Scheduler scheduler;
   std::atomic<bool> draining{false};
+  const std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
 }  // namespace holdfast::server

@@ -68,9 +68,9 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
   return answer(state_.metrics, context, [&] {
-    state_.tokens.check(authorization(*context));
+    const std::string owner = state_.tokens.check(authorization(*context));
     if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
-    const auto session = state_.sessions.create(session_config_from(*request));
+    const auto session = state_.sessions.create(session_config_from(*request), owner);
     const SessionConfig& config = session->config();
     response->set_session_id(session->id());
     response->set_token(session->token());

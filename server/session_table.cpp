@@ -21,7 +21,7 @@ std::string mib(std::size_t bytes) {
 SessionTable::SessionTable(SessionLimits limits, Clock clock)
     : limits_(limits), clock_(std::move(clock)) {}
 
-std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
+std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::string& owner) {
   const std::string id = random_hex(kIdBytes);
   expire();
   const DenoiserConfig& core = config.denoiser;
@@ -31,7 +31,7 @@ std::shared_ptr<Session> SessionTable::create(SessionConfig config) {
                          " pixels on each side on this server",
                      std::to_string(core.width) + "x" + std::to_string(core.height));
   const std::size_t frames = frame_bytes(core, limits_.credits);
-  admit(id, frames + estimated_denoiser_bytes(core));
+  admit(id, frames + estimated_denoiser_bytes(core), owner);
   try {
     auto session =
         std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
@@ -60,14 +60,29 @@ void SessionTable::check_bytes(std::size_t session_bytes, std::size_t total_byte
                        {"max-total-bytes", limits_.linger});
 }
 
-void SessionTable::admit(const std::string& id, std::size_t bytes) {
+/// Called with the mutex held.
+void SessionTable::check_owner(const std::string& owner) const {
+  const std::size_t most = limits_.max_sessions_per_token;
+  if (most == 0 || owner.empty()) return;
+  const auto of_owner = [&](const auto& entry) { return entry.second.owner == owner; };
+  if (std::count_if(entries_.begin(), entries_.end(), of_owner) >= static_cast<long>(most))
+    throw RefusedError("there are " + std::to_string(most) +
+                           " sessions with this bearer token, the most the server allows for one",
+                       {"max-sessions-per-token", limits_.linger});
+}
+
+void SessionTable::admit(const std::string& id, std::size_t bytes, const std::string& owner) {
   const std::lock_guard lock(mutex_);
+  check_owner(owner);
   if (entries_.size() >= limits_.max_sessions)
     throw RefusedError(
         "the server has " + std::to_string(entries_.size()) + " sessions, the most it allows",
         {"max-sessions", limits_.linger});
   check_bytes(bytes, total_bytes_ + bytes);
-  entries_.emplace(id, Entry{nullptr, bytes, SessionLife(clock_())});
+  const TimePoint now = clock_();
+  entries_.emplace(id, Entry{nullptr, bytes, SessionLife(now), owner,
+                             std::make_shared<SessionRates>(limits_, now),
+                             std::make_shared<SessionWatch>(++made_)});
   total_bytes_ += bytes;
 }
 
@@ -101,7 +116,7 @@ SessionTable::Attached SessionTable::attach(const std::string& id, const std::st
   checked(id, token);
   Entry& entry = entries_.at(id);
   const bool taken_over = entry.life.streaming();
-  return {entry.session, entry.life.attach(), taken_over};
+  return {entry.session, entry.rates, entry.watch, entry.life.attach(), taken_over};
 }
 
 void SessionTable::detach(const Session& session, SessionLife::Hold hold) {
@@ -133,6 +148,20 @@ int SessionTable::expire() {
     }
   }
   return static_cast<int>(dying.size());
+}
+
+std::vector<SessionTable::Listed> SessionTable::list() const {
+  std::vector<Listed> out;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, entry] : entries_)
+      if (entry.session)
+        out.push_back({entry.session, entry.watch, entry.bytes, entry.life.streaming()});
+  }
+  std::sort(out.begin(), out.end(), [](const Listed& a, const Listed& b) {
+    return a.watch->ordinal() < b.watch->ordinal();
+  });
+  return out;
 }
 
 bool SessionTable::attached(const Session& session) const {

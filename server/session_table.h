@@ -10,6 +10,8 @@
 #include "server/config.h"
 #include "server/session.h"
 #include "server/session_life.h"
+#include "server/session_rates.h"
+#include "server/session_watch.h"
 
 namespace holdfast::server {
 
@@ -22,10 +24,11 @@ class SessionTable {
 
   explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
 
-  /// Makes a session with a random id and token. Its memory is estimated and admitted before
+  /// Makes a session with a random id and token. `owner`: the bearer token that it is made with,
+  /// empty if there is none. Its memory is estimated and admitted before
   /// anything of its size is allocated, then corrected to what it is. Throws InputError for a bad
   /// configuration, RefusedError(kLimit) naming the limit.
-  std::shared_ptr<Session> create(SessionConfig config);
+  std::shared_ptr<Session> create(SessionConfig config, const std::string& owner = {});
 
   /// The session. Throws RefusedError(kUnknownSession, kWrongToken).
   std::shared_ptr<Session> find(const std::string& id, const std::string& token) const;
@@ -33,6 +36,8 @@ class SessionTable {
   /// A session held for one stream until `detach`.
   struct Attached {
     std::shared_ptr<Session> session;
+    std::shared_ptr<SessionRates> rates;
+    std::shared_ptr<SessionWatch> watch;
     SessionLife::Hold hold = 0;
     bool taken_over = false;  ///< from an older stream, whose hold is void now
   };
@@ -47,6 +52,15 @@ class SessionTable {
   int expire();
 
   bool attached(const Session& session) const;
+  /// What is known of one session from outside.
+  struct Listed {
+    std::shared_ptr<const Session> session;
+    std::shared_ptr<SessionWatch> watch;
+    std::size_t bytes = 0;
+    bool streaming = false;
+  };
+  /// All sessions, in the order in which they were made.
+  std::vector<Listed> list() const;
   /// Bytes accounted to the session; 0 if it was removed.
   std::size_t bytes(const Session& session) const;
   std::size_t size() const;
@@ -58,10 +72,14 @@ class SessionTable {
     std::shared_ptr<Session> session;  ///< null while it is being made
     std::size_t bytes = 0;
     SessionLife life;
+    std::string owner;  ///< a secret: compared, never shown
+    std::shared_ptr<SessionRates> rates;
+    std::shared_ptr<SessionWatch> watch;
   };
 
   const Entry& checked(const std::string& id, const std::string& token) const;
-  void admit(const std::string& id, std::size_t bytes);
+  void admit(const std::string& id, std::size_t bytes, const std::string& owner);
+  void check_owner(const std::string& owner) const;
   void settle(const std::string& id, std::size_t bytes);
   void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
 
@@ -70,6 +88,7 @@ class SessionTable {
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
   std::size_t total_bytes_ = 0;
+  int made_ = 0;  ///< sessions asked for so far
 };
 
 }  // namespace holdfast::server

@@ -24,6 +24,7 @@ grpc::StatusCode code_of(Refusal reason) {
     case Refusal::kLimit: return grpc::StatusCode::RESOURCE_EXHAUSTED;
     case Refusal::kDraining: return grpc::StatusCode::UNAVAILABLE;
     case Refusal::kUnauthenticated: return grpc::StatusCode::UNAUTHENTICATED;
+    case Refusal::kTooSlow: return grpc::StatusCode::DEADLINE_EXCEEDED;
   }
   return grpc::StatusCode::INTERNAL;
 }

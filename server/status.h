@@ -10,7 +10,8 @@ namespace holdfast::server {
 
 /// The one place where exceptions become gRPC statuses: InputError -> INVALID_ARGUMENT with
 /// InputViolation details; RefusedError -> NOT_FOUND, PERMISSION_DENIED, ABORTED,
-/// RESOURCE_EXHAUSTED, UNAVAILABLE or UNAUTHENTICATED; std::bad_alloc -> RESOURCE_EXHAUSTED; others
+/// RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED or DEADLINE_EXCEEDED; std::bad_alloc ->
+/// RESOURCE_EXHAUSTED; others
 /// -> INTERNAL.
 grpc::Status status_from(std::exception_ptr error);
 

@@ -49,6 +49,10 @@ void StreamRegistry::take_over(const std::string& session_id, SessionLife::Hold 
     if (stream->session_id() == session_id) stream->yield(hold);
 }
 
+void StreamRegistry::tick(std::chrono::steady_clock::time_point now) {
+  for (const auto& stream : all()) stream->tick(now);
+}
+
 void StreamRegistry::drain(std::chrono::milliseconds deadline) {
   {
     const std::lock_guard lock(mutex_);

@@ -28,6 +28,8 @@ class StreamRegistry {
   void close_session(const std::string& session_id);
   /// Ends the streams of a session whose holds are older than `hold`.
   void take_over(const std::string& session_id, SessionLife::Hold hold);
+  /// Lets every stream look at the clock; see DenoiseStream::tick.
+  void tick(std::chrono::steady_clock::time_point now);
   /// Asks every stream to finish the frames in flight and end; refuses new ones.
   void drain(std::chrono::milliseconds deadline);
   /// Waits until no stream is open; false if some are at the deadline.

@@ -33,8 +33,8 @@ void TokenFile::read() {
   changed_ = changed;
 }
 
-void TokenFile::check(std::string_view authorization) {
-  if (file_.empty()) return;
+std::string TokenFile::check(std::string_view authorization) {
+  if (file_.empty()) return {};
   if (!authorization.starts_with(kBearer))
     throw RefusedError(Refusal::kUnauthenticated, "the server asks for a bearer token");
   authorization.remove_prefix(kBearer.size());
@@ -43,6 +43,7 @@ void TokenFile::check(std::string_view authorization) {
   bool known = false;
   for (const std::string& token : tokens_) known |= equal_secrets(token, authorization);
   if (!known) throw RefusedError(Refusal::kUnauthenticated, "the bearer token is not known");
+  return std::string(authorization);
 }
 
 }  // namespace holdfast::server

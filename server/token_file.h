@@ -18,8 +18,9 @@ class TokenFile {
   explicit TokenFile(std::string file);
 
   /// `authorization`: the value of that header, empty if there is none. Throws
-  /// RefusedError(kUnauthenticated); no message repeats a token.
-  void check(std::string_view authorization);
+  /// RefusedError(kUnauthenticated); no message repeats a token. Returns the token; empty if none
+  /// is asked for.
+  std::string check(std::string_view authorization);
 
  private:
   void read();

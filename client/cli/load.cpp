@@ -1,12 +1,13 @@
 #include "client/cli/load.h"
 
 #include <chrono>
+#include <deque>
 #include <optional>
 #include <thread>
 
 #include "client/cli/command.h"
 #include "client/cli/embedded_server.h"
-#include "client/cli/load_session.h"
+#include "client/cli/load_client.h"
 
 namespace holdfast::cli {
 namespace {
@@ -19,6 +20,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }  // namespace
 
 void LoadTimes::add(const LoadTimes& other) {
+  append(at_s, other.at_s);
   append(latency, other.latency);
   append(client, other.client);
   append(queue, other.queue);
@@ -33,6 +35,7 @@ double LoadResult::frames_per_second() const {
 void LoadResult::add(const LoadResult& other) {
   submitted += other.submitted;
   answered += other.answered;
+  clients += other.clients;
   reconnects += other.reconnects;
   elapsed_s = std::max(elapsed_s, other.elapsed_s);
   bytes_in += other.bytes_in;
@@ -44,34 +47,30 @@ void LoadResult::add(const LoadResult& other) {
 LoadResult run_load(const LoadOptions& options) {
   std::optional<EmbeddedServer> embedded;
   if (options.server.empty()) embedded.emplace(options.threads);
-  LoadFrames frames(options);
+  std::string address = embedded ? embedded->address() : options.server;
+  std::optional<Relay> relay;
+  if (!options.link.plain()) address = relay.emplace(address, options.link).address();
+
+  std::deque<LoadFrames> frames;  // one for each size
   LoadResult result;
   result.options = options;
-  result.options.width = frames.config().width;
-  result.options.height = frames.config().height;
-  const std::string address = embedded ? embedded->address() : options.server;
-
-  std::vector<std::unique_ptr<LoadSession>> sessions;
+  for (LoadSize& size : result.options.sizes) {
+    frames.emplace_back(options, size);
+    size = {frames.back().config().width, frames.back().config().height};
+  }
+  std::deque<LoadClient> clients;
   for (int i = 0; i < options.sessions; ++i) {
-    try {
-      sessions.push_back(std::make_unique<LoadSession>(options, address, frames));
-    } catch (const client::RefusedError& error) {
-      if (sessions.empty()) throw ServerUnreachable(error.what());
-      ++result.errors["refused"];
-    } catch (const client::ConnectionError& error) {
-      if (sessions.empty()) throw ServerUnreachable(error.what());
-      ++result.errors["connection"];
-    }
+    const double part = static_cast<double>(i) / options.sessions;
+    clients.emplace_back(options, address, frames[static_cast<std::size_t>(i) % frames.size()],
+                         part);
+    const std::string refusal = clients.back().make_session();
+    if (!refusal.empty() && clients.size() == 1) throw ServerUnreachable(refusal);
   }
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < sessions.size(); ++i) {
-    // Apart within one period, as independent clients are.
-    const double part = static_cast<double>(i) / static_cast<double>(sessions.size());
-    threads.emplace_back([&, i, part] { sessions[i]->run(start, part); });
-  }
+  for (LoadClient& client : clients) threads.emplace_back([&] { client.run(start); });
   for (std::thread& thread : threads) thread.join();
-  for (const auto& session : sessions) result.add(session->result());
+  for (const LoadClient& client : clients) result.add(client.result());
   return result;
 }
 

@@ -7,14 +7,24 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/cli/access_options.h"
+#include "client/cli/relay.h"
+
 namespace holdfast::cli {
+
+/// Size of the frames of a session, pixels.
+struct LoadSize {
+  int width = 480, height = 270;
+};
 
 /// A load on a server.
 struct LoadOptions {
-  std::string server;             ///< host:port or unix:PATH; empty = a server in this process
-  int threads = 0;                ///< of the server in this process; 0 = one for each core
-  std::string frames = "fence";   ///< a built-in scene, a scene file, or the folder of a sequence
-  int width = 480, height = 270;  ///< pixels; a sequence has its own
+  std::string server;            ///< host:port or unix:PATH; empty = a server in this process
+  Access access;                 ///< what that server asks for
+  int threads = 0;               ///< of the server in this process; 0 = one for each core
+  std::string frames = "fence";  ///< a built-in scene, a scene file, or the folder of a sequence
+  /// Sessions take the sizes in turn; a sequence has its own. Never empty.
+  std::vector<LoadSize> sizes = std::vector<LoadSize>(1);
   int sessions = 1;
   /// Frames that each session sends a second, whether or not the server keeps up (open loop); 0 =
   /// the next when a credit is free (closed loop).
@@ -22,10 +32,13 @@ struct LoadOptions {
   double seconds = 10;  ///< for which frames are sent; the answers of all are waited for
   std::string recipe = "reliable";
   std::string preset = "balanced";
+  Link link;           ///< between each session and the server
+  double churn_s = 0;  ///< each client leaves after that long and comes back anew; 0 = never
 };
 
 /// Where the time of the answered frames went, milliseconds, one value a frame.
 struct LoadTimes {
+  std::vector<double> at_s;       ///< of the answer, seconds since the start of the load
   std::vector<double> latency;    ///< from when the frame was to be sent to its last result byte
   std::vector<double> client;     ///< of that: waiting for its turn and for a credit
   std::vector<double> queue;      ///< waiting in the server
@@ -36,7 +49,8 @@ struct LoadTimes {
 };
 
 struct LoadResult {
-  LoadOptions options;  ///< with the size that was used
+  LoadOptions options;       ///< with the sizes that were used
+  std::int64_t clients = 0;  ///< sessions that were made
   std::int64_t submitted = 0, answered = 0;
   std::int64_t reconnects = 0;
   double elapsed_s = 0;                       ///< from the first submit to the last answer
@@ -61,7 +75,24 @@ struct LoadSearch {
 };
 LoadSearch search_load(LoadOptions options, double goal_ms);
 
+/// The machine-readable form of a result.
 nlohmann::ordered_json load_json(const LoadResult& result);
+/// For a terminal.
 std::string load_text(const LoadResult& result);
+/// A page by itself: the figures, percentiles of latency over time and their distribution.
+std::string load_html(const LoadResult& result);
+
+/// The parts of the latency, in order, for those who print them.
+struct LoadPart {
+  const char* name;
+  const std::vector<double> LoadTimes::*values;
+};
+inline constexpr LoadPart kLoadParts[] = {{"latency", &LoadTimes::latency},
+                                          {"client", &LoadTimes::client},
+                                          {"queue", &LoadTimes::queue},
+                                          {"filter", &LoadTimes::filter},
+                                          {"transport", &LoadTimes::transport}};
+/// "480x270", or several with commas between.
+std::string load_sizes(const LoadOptions& options);
 
 }  // namespace holdfast::cli

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
 #include "client/cli/command.h"
@@ -11,10 +12,18 @@ namespace {
 
 struct Arguments {
   LoadOptions options;
-  std::string size = "480x270", json;
+  std::vector<std::string> sizes{"480x270"};
+  std::string json, html;
   double search_ms = 0;
   bool quiet = false;
 };
+
+/// Writes a text file.
+void write_file(const std::string& file, const std::string& text) {
+  std::ofstream stream(file);
+  stream << text;
+  if (!stream.flush()) throw std::runtime_error("cannot write " + file);
+}
 
 /// The run that stands for the search: the fastest that held.
 const LoadResult& best(const LoadSearch& search) {
@@ -25,19 +34,22 @@ const LoadResult& best(const LoadSearch& search) {
 
 void run(const Arguments& args) {
   nlohmann::ordered_json json;
+  LoadResult result;
   if (args.search_ms > 0) {
     const LoadSearch search = search_load(args.options, args.search_ms);
-    json = load_json(best(search));
+    result = best(search);
+    json = load_json(result);
     json["search"] = {{"p95_goal_ms", args.search_ms}, {"fps", search.fps}};
     if (!args.quiet)
       std::printf("%.1f frames/s each is the largest rate whose p95 stays within %g ms\n%s",
-                  search.fps, args.search_ms, load_text(best(search)).c_str());
+                  search.fps, args.search_ms, load_text(result).c_str());
   } else {
-    const LoadResult result = run_load(args.options);
+    result = run_load(args.options);
     json = load_json(result);
     if (!args.quiet) std::printf("%s", load_text(result).c_str());
   }
   if (!args.json.empty()) write_json_file(args.json, json);
+  if (!args.html.empty()) write_file(args.html, load_html(result));
 }
 
 }  // namespace
@@ -60,7 +72,12 @@ void add_load(CLI::App& app) {
   command.add_option("--seconds", options.seconds, "for which frames are sent")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command.add_option("--size", args->size, "of rendered frames, WIDTHxHEIGHT")
+  command
+      .add_option(
+          "--size", args->sizes,
+          "of rendered frames, WIDTHxHEIGHT; several, by commas or by repetition, are taken "
+          "in turn by the sessions")
+      ->delimiter(',')
       ->capture_default_str();
   command
       .add_option("--frames", options.frames,
@@ -75,13 +92,31 @@ void add_load(CLI::App& app) {
                   "many milliseconds")
       ->check(CLI::PositiveNumber)
       ->excludes(fps);
+  command
+      .add_option("--churn-s", options.churn_s,
+                  "each client leaves after that many seconds and comes back with a new session")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--delay-ms", options.link.delay_ms,
+                  "that a link between clients and server adds each way")
+      ->check(CLI::Range(0.0, 10000.0));
+  command
+      .add_option("--bandwidth-mbit", options.link.bandwidth_mbit,
+                  "that the link carries for each client and direction, million bits a second")
+      ->check(CLI::PositiveNumber);
   command.add_option("--threads", options.threads, "of the server in this process")
       ->check(CLI::Range(1, 1024))
       ->excludes(server);
+  add_access_options(command, server, options.access);
   command.add_flag("--quiet", args->quiet, "no summary");
   command.add_option("--json", args->json, "file for the machine-readable result");
+  command.add_option("--html", args->html, "file for a page with plots");
   command.callback([args] {
-    parse_image_size("--size", args->size, args->options.width, args->options.height);
+    args->options.sizes.clear();
+    for (const std::string& size : args->sizes) {
+      LoadSize& out = args->options.sizes.emplace_back();
+      parse_image_size("--size", size, out.width, out.height);
+    }
     run(*args);
   });
 }

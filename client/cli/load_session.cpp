@@ -22,19 +22,21 @@ client::SessionOptions session_options(const LoadOptions& options, const std::st
   out.planes = config.planes;
   out.recipe = options.recipe;
   out.preset = options.preset;
+  use_access(options.access, out);
   out.rewarm_frames = 0;  // frames are used again as soon as they are answered
   return out;
 }
 
 }  // namespace
 
-LoadFrames::LoadFrames(const LoadOptions& options)
-    : source_(options.frames, options.width, options.height), config_(source_.config()) {
+LoadFrames::LoadFrames(const LoadOptions& options, const LoadSize& size)
+    : source_(options.frames, size.width, size.height), config_(source_.config()) {
   if (recipe_uses(options.recipe, PlaneKind::kGradient)) return;
   std::erase_if(config_.planes, [](PlaneId id) { return id.kind == PlaneKind::kGradient; });
 }
 
 Frame LoadFrames::copy(int i) {
+  const std::lock_guard lock(mutex_);
   const Frame& from = source_.at(i);
   Frame to;
   to.camera = from.camera;
@@ -58,8 +60,9 @@ LoadSession::LoadSession(const LoadOptions& options, const std::string& address,
     ring_.push_back(std::make_shared<Frame>(frames.copy(static_cast<int>(i))));
 }
 
-void LoadSession::run(Clock::time_point start, double phase) {
-  std::thread sender([&] { send(start, phase); });
+void LoadSession::run(const Span& span) {
+  load_start_ = span.load_start;
+  std::thread sender([&] { send(span); });
   try {
     while (auto output = session_.receive()) {
       take(*output);
@@ -71,23 +74,25 @@ void LoadSession::run(Clock::time_point start, double phase) {
     count_error("refused");
   }
   sender.join();
-  result_.elapsed_s = ms_between(start, Clock::now()) / 1000;
+  result_.clients = 1;
+  result_.elapsed_s = ms_between(load_start_, Clock::now()) / 1000;
   result_.reconnects = session_.reconnects();
   result_.bytes_in = session_.traffic().sent;
   result_.bytes_out = session_.traffic().received;
 }
 
-void LoadSession::send(Clock::time_point start, double phase) {
+void LoadSession::send(const Span& span) {
   const auto period = std::chrono::duration<double>(options_.fps > 0 ? 1 / options_.fps : 0);
   const auto at = [&](double periods) {
-    return start + std::chrono::duration_cast<Clock::duration>(period * periods);
+    return span.start + std::chrono::duration_cast<Clock::duration>(period * periods);
   };
-  const Clock::time_point end = start + std::chrono::duration_cast<Clock::duration>(
-                                            std::chrono::duration<double>(options_.seconds));
+  const Clock::time_point end = span.start + std::chrono::duration_cast<Clock::duration>(
+                                                 std::chrono::duration<double>(span.seconds));
   try {
     for (std::int64_t i = 0;; ++i) {
       const Clock::time_point now = Clock::now();
-      const Clock::time_point due = options_.fps > 0 ? at(static_cast<double>(i) + phase) : now;
+      const Clock::time_point due =
+          options_.fps > 0 ? at(static_cast<double>(i) + span.phase) : now;
       if (due >= end) break;
       if (due > now) std::this_thread::sleep_until(due);
       const std::shared_ptr<Frame>& frame = ring_[static_cast<std::size_t>(i) % ring_.size()];
@@ -122,6 +127,7 @@ void LoadSession::take(const client::FrameOutput& output) {
   const client::FrameTiming& timing = output.timing;
   LoadTimes& times = result_.times;
   ++result_.answered;
+  times.at_s.push_back(ms_between(load_start_, Clock::now()) / 1000);
   times.latency.push_back(client_ms + timing.total);
   times.client.push_back(client_ms);
   times.queue.push_back(timing.wait);

@@ -18,13 +18,14 @@ namespace holdfast::cli {
 class LoadFrames {
  public:
   /// Renders or reads them. Throws InputError.
-  explicit LoadFrames(const LoadOptions& options);
+  LoadFrames(const LoadOptions& options, const LoadSize& size);
 
   const DenoiserConfig& config() const { return config_; }
-  /// A copy of the `i`-th frame, with the planes of `config`.
+  /// A copy of the `i`-th frame, with the planes of `config`. Called from any thread.
   Frame copy(int i);
 
  private:
+  std::mutex mutex_;  ///< of source_
   BenchFrames source_;
   DenoiserConfig config_;
 };
@@ -35,22 +36,30 @@ class LoadSession {
   /// Makes the session. Throws as client::Session.
   LoadSession(const LoadOptions& options, const std::string& address, LoadFrames& frames);
 
-  /// Sends from `start` and `phase` (0..1) of a period on, and waits for all answers.
-  void run(std::chrono::steady_clock::time_point start, double phase);
+  /// When a session sends.
+  struct Span {
+    std::chrono::steady_clock::time_point load_start;  ///< of the whole load
+    std::chrono::steady_clock::time_point start;
+    double seconds = 0;
+    double phase = 0;  ///< 0..1, of a period, by which it begins later
+  };
+  /// Sends for that span, and waits for all answers.
+  void run(const Span& span);
   const LoadResult& result() const { return result_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void send(Clock::time_point start, double phase);
+  void send(const Span& span);
   void take(const client::FrameOutput& output);
   void count_error(const char* kind);
 
   const LoadOptions& options_;
   client::Session session_;
   std::vector<std::shared_ptr<Frame>> ring_;  ///< one more than may be in flight
-  std::mutex mutex_;                          ///< of what follows
-  std::deque<double> client_ms_;              ///< of the frames in flight, in order
+  Clock::time_point load_start_;
+  std::mutex mutex_;              ///< of what follows
+  std::deque<double> client_ms_;  ///< of the frames in flight, in order
   LoadResult result_;
 };
 

@@ -7,16 +7,6 @@
 namespace holdfast::cli {
 namespace {
 
-struct Part {
-  const char* name;
-  const std::vector<double> LoadTimes::*values;
-};
-constexpr Part kParts[] = {{"latency", &LoadTimes::latency},
-                           {"client", &LoadTimes::client},
-                           {"queue", &LoadTimes::queue},
-                           {"filter", &LoadTimes::filter},
-                           {"transport", &LoadTimes::transport}};
-
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
@@ -30,10 +20,18 @@ std::string printed(const char* format, T... values) {
 
 }  // namespace
 
+std::string load_sizes(const LoadOptions& options) {
+  std::string text;
+  for (const LoadSize& size : options.sizes)
+    text +=
+        (text.empty() ? "" : ",") + std::to_string(size.width) + "x" + std::to_string(size.height);
+  return text;
+}
+
 nlohmann::ordered_json load_json(const LoadResult& result) {
   const LoadOptions& options = result.options;
   nlohmann::ordered_json ms, errors = nlohmann::ordered_json::object();
-  for (const Part& part : kParts) {
+  for (const LoadPart& part : kLoadParts) {
     ms[part.name] = percentiles(result.times.*part.values);
     ms[part.name]["max"] = largest(result.times.*part.values);
   }
@@ -41,8 +39,13 @@ nlohmann::ordered_json load_json(const LoadResult& result) {
   return {{"sessions", options.sessions},
           {"fps", options.fps},
           {"seconds", options.seconds},
-          {"width", options.width},
-          {"height", options.height},
+          {"width", options.sizes.front().width},
+          {"height", options.sizes.front().height},
+          {"sizes", load_sizes(options)},
+          {"delay_ms", options.link.delay_ms},
+          {"bandwidth_mbit", options.link.bandwidth_mbit},
+          {"churn_s", options.churn_s},
+          {"clients", result.clients},
           {"recipe", options.recipe},
           {"preset", options.preset},
           {"submitted", result.submitted},
@@ -61,15 +64,21 @@ std::string load_text(const LoadResult& result) {
   const std::string rate =
       options.fps > 0 ? printed("%g frames/s each", options.fps) : std::string("closed loop");
   std::string text =
-      printed("%d sessions of %dx%d, %s, %s (%s)\n", options.sessions, options.width,
-              options.height, rate.c_str(), options.recipe.c_str(), options.preset.c_str());
+      printed("%d sessions of ", options.sessions) + load_sizes(options) +
+      printed(", %s, %s (%s)\n", rate.c_str(), options.recipe.c_str(), options.preset.c_str());
+  if (!options.link.plain())
+    text += printed("over a link with %g ms one way and %g Mbit/s (0: no limit)\n",
+                    options.link.delay_ms, options.link.bandwidth_mbit);
+  if (options.churn_s > 0)
+    text += printed("each client left after %g s: %lld sessions in all\n", options.churn_s,
+                    static_cast<long long>(result.clients));
   text += printed("answered %lld of %lld frames, %.1f frames/s, %.1f MB/s in, %.1f MB/s out\n",
                   static_cast<long long>(result.answered), static_cast<long long>(result.submitted),
                   result.frames_per_second(),
                   1e-6 * static_cast<double>(result.bytes_in) / std::max(result.elapsed_s, 1e-9),
                   1e-6 * static_cast<double>(result.bytes_out) / std::max(result.elapsed_s, 1e-9));
   text += printed("%-10s %9s %9s %9s %9s\n", "ms", "p50", "p95", "p99", "max");
-  for (const Part& part : kParts) {
+  for (const LoadPart& part : kLoadParts) {
     const std::vector<double>& values = result.times.*part.values;
     text += printed("%-10s %9.2f %9.2f %9.2f %9.2f\n", part.name, percentile(values, 0.50),
                     percentile(values, 0.95), percentile(values, 0.99), largest(values));

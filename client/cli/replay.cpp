@@ -40,6 +40,7 @@ client::SessionOptions session_options(const SequenceReader& sequence, const Rep
                                        const std::string& address) {
   client::SessionOptions session;
   session.address = address;
+  use_access(options.access, session);
   session.width = sequence.header().width;
   session.height = sequence.header().height;
   session.lights = sequence.header().lights;

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "client/cli/access_options.h"
+
 namespace holdfast::cli {
 
 /// How a sequence is streamed through a server.
@@ -15,6 +17,7 @@ struct ReplayOptions {
   std::filesystem::path dir;  ///< the sequence
   std::filesystem::path out;  ///< where frame.####.exr files are written; made if need be
   std::string server;         ///< host:port or unix:PATH; empty = a server in this process
+  Access access;              ///< what that server asks for
   int threads = 0;            ///< of the server in this process; 0 = one for each core
   std::string recipe = "reliable";
   std::string preset = "balanced";

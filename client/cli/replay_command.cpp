@@ -46,6 +46,7 @@ void add_replay(CLI::App& app) {
   command.add_option("--threads", options.threads, "of the server in this process")
       ->check(CLI::Range(1, 1024))
       ->excludes(server);
+  add_access_options(command, server, options.access);
   command
       .add_option("--reconnect-ms", options.reconnect_ms, "how long a lost server is waited for")
       ->capture_default_str()

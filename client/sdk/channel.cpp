@@ -7,6 +7,7 @@
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
 
+#include "core/frame/error.h"
 #include "proto/plane_bytes.h"
 
 namespace holdfast::client {
@@ -22,29 +23,48 @@ constexpr int kKeepaliveTimeoutMs = 5000;
 constexpr int kFirstBackoffMs = 50;
 constexpr int kLongestBackoffMs = 1000;
 
-std::string file_text(const char* subject, const std::string& file) {
+/// The text of a PEM file that holds a `what`, such as "CERTIFICATE".
+std::string pem_text(const char* subject, const std::string& file, const char* what) {
   if (file.empty()) return {};
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
+  const std::string name = std::string(subject) + " " + file;
   if (text.str().empty())
-    throw InputError(std::string(subject) + " " + file, "must be a file that can be read",
-                     "missing or empty");
+    throw InputError(name, "must be a file that can be read", "missing or empty");
+  // Not a parser: it tells a wrong file from a right one, also a key from a certificate.
+  if (text.str().find("-----BEGIN ") == std::string::npos ||
+      text.str().find(std::string(what) + "-----") == std::string::npos)
+    throw InputError(name, std::string("must hold a ") + what + " in PEM form", "without one");
   return text.str();
 }
 
 std::shared_ptr<grpc::ChannelCredentials> credentials(const TlsFiles& files) {
+  if (files.certificate.empty() != files.key.empty())
+    throw InputError("TLS of a client", "must have both a certificate and a key, or neither",
+                     "one of them");
+  if (files.ca.empty() && !files.key.empty())
+    throw InputError("TLS of a client", "must have the authorities of the server",
+                     "a certificate alone");
   if (files.ca.empty()) return grpc::InsecureChannelCredentials();
   grpc::SslCredentialsOptions options;
-  options.pem_root_certs = file_text("TLS authorities", files.ca);
-  options.pem_cert_chain = file_text("TLS certificate", files.certificate);
-  options.pem_private_key = file_text("TLS key", files.key);
+  options.pem_root_certs = pem_text("TLS authorities", files.ca, "CERTIFICATE");
+  options.pem_cert_chain = pem_text("TLS certificate", files.certificate, "CERTIFICATE");
+  options.pem_private_key = pem_text("TLS key", files.key, "PRIVATE KEY");
   return grpc::SslCredentials(options);
+}
+
+/// A bearer token is the value of a header, which can carry no others.
+void check_token(const std::string& token) {
+  for (const char c : token)
+    if (c <= ' ' || c > '~')
+      throw InputError("bearer token", "must be of visible ASCII characters", "with others");
 }
 
 }  // namespace
 
 std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
   const std::string& address = session.address;
+  check_token(session.bearer_token);
   grpc::ChannelArguments args;
   args.SetMaxReceiveMessageSize(wire::kMaxMessageBytes);
   args.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);

@@ -48,6 +48,47 @@ TEST_F(Load, KeepsTheServerBusyInAClosedLoop) {
   EXPECT_EQ(json["ms"]["client"]["max"], 0.0);
 }
 
+TEST_F(Load, AddsALinkBetweenClientsAndServer) {
+  const auto plain = load({"--fps", "8"});
+  const auto slow = load({"--fps", "8", "--delay-ms", "30", "--bandwidth-mbit", "50"});
+  EXPECT_EQ(slow["answered"], 4);
+  EXPECT_EQ(slow["delay_ms"], 30.0);
+  // One way for the frame, one for its answer, and 50 Mbit/s for 48 x 32 x 13 words.
+  EXPECT_GE(slow["ms"]["latency"]["p50"], 60.0);
+  EXPECT_GE(slow["ms"]["transport"]["p50"], plain["ms"]["transport"]["p50"].get<double>() + 50);
+}
+
+TEST_F(Load, LetsClientsComeAndGo) {
+  const auto json = load({"--fps", "20", "--sessions", "2", "--churn-s", "0.15"});
+  EXPECT_GE(json["clients"], 6) << "each came back after 0.15 s of 0.5";
+  EXPECT_EQ(json["answered"], json["submitted"]);
+  EXPECT_GE(json["submitted"], 12);
+  EXPECT_TRUE(json["errors"].empty());
+}
+
+TEST_F(Load, GivesSessionsTheirSizesInTurn) {
+  const auto json = load({"--fps", "8", "--sessions", "3", "--size", "24x16"});
+  EXPECT_EQ(json["sizes"], "48x32,24x16");
+  EXPECT_EQ(json["answered"], 12);
+  const auto small = load({"--fps", "8", "--sessions", "3"}, "24x16");
+  // Two of 48x32 and one of 24x16, against three of these.
+  EXPECT_EQ(json["bytes_in"].get<double>() / small["bytes_in"].get<double>(), 9.0 / 3.0);
+}
+
+TEST_F(Load, WritesAPageWithItsFiguresByItself) {
+  const auto json = load({"--fps", "20", "--html", path("load.html")});
+  const std::string page = test::file_text(dir / "load.html");
+  EXPECT_NE(page.find("answered 10 of 10 frames"), std::string::npos);
+  EXPECT_NE(page.find("class=\"line p95\""), std::string::npos);
+  std::size_t frames = 0;
+  for (std::size_t at = 0; (at = page.find("<title>", at + 1)) != std::string::npos;)
+    if (page.compare(at + 7, 2, "p5") != 0 && std::isdigit(page[at + 7]))
+      frames += std::stoul(page.substr(at + 7));
+  EXPECT_EQ(frames, 10u) << "each is in a bar of the histogram";
+  EXPECT_EQ(page.find("src="), std::string::npos) << "nothing from elsewhere";
+  EXPECT_EQ(page.find("href="), std::string::npos);
+}
+
 TEST_F(Load, SaysThatAServerIsNotThere) {
   EXPECT_EQ(holdfast({"load", "--server", "127.0.0.1:1", "--seconds", "1", "--size", "8x8"}), 3);
   EXPECT_NE(text.find("cannot be reached"), std::string::npos) << text;

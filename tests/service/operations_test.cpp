@@ -1,14 +1,11 @@
 // What an operator sees: probes, metrics, limits, tokens, configuration.
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <fstream>
 #include <sstream>
 #include <thread>
 
 #include "core/frame/error.h"
 #include "server/options.h"
+#include "tests/service/http_get.h"
 #include "tests/service/raw_client.h"
 #include "tests/service/served.h"
 #include "tests/service/server_process.h"
@@ -17,28 +14,9 @@ namespace holdfast {
 namespace {
 
 using namespace std::chrono_literals;
+using test::http;
 using test::RawClient;
 using test::RawStream;
-
-/// The answer to one HTTP request, head and body.
-std::string http(const std::string& address, const std::string& request) {
-  const int fd = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_port =
-      htons(static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1))));
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  std::string answer;
-  if (connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0) {
-    const std::string text = request + " HTTP/1.1\r\nHost: test\r\nConnection: close\r\n\r\n";
-    send(fd, text.data(), text.size(), 0);
-    char buffer[4096];
-    for (ssize_t got = 0; (got = recv(fd, buffer, sizeof(buffer), 0)) > 0;)
-      answer.append(buffer, static_cast<std::size_t>(got));
-  }
-  close(fd);
-  return answer;
-}
 
 class Operations : public ::testing::Test {
  protected:
@@ -48,6 +26,12 @@ class Operations : public ::testing::Test {
     server = std::make_unique<server::Server>(config);
   }
   std::string get(const std::string& path) { return http(server->admin_address(), "GET " + path); }
+  /// The value of a metric without labels.
+  double value(const std::string& name) {
+    const std::string text = get("/metrics");
+    const std::size_t at = text.find("\n" + name + " ");
+    return at == std::string::npos ? -1 : std::stod(text.substr(at + name.size() + 2));
+  }
   bool shows(const std::string& line) {
     return get("/metrics").find(line + "\n") != std::string::npos;
   }
@@ -98,6 +82,17 @@ TEST_F(Operations, MetricsCountFramesStagesResetsAndRefusals) {
   EXPECT_TRUE(shows("holdfast_history_resets_total{reason=\"cut\"} 1"));
   EXPECT_TRUE(shows("holdfast_stage_seconds_count{stage=\"filter\"} 3"));
   EXPECT_TRUE(shows("holdfast_stage_seconds_count{stage=\"receive\"} 6"));
+  EXPECT_TRUE(shows("holdfast_stage_seconds_count{stage=\"decode\"} 6"));
+  EXPECT_TRUE(shows("holdfast_stage_seconds_count{stage=\"encode\"} 5") ||
+              shows("holdfast_stage_seconds_count{stage=\"encode\"} 6"))
+      << "the last one may just be leaving";
+  EXPECT_TRUE(shows("holdfast_preset_frames_total{preset=\"balanced\"} 3"));
+  EXPECT_TRUE(shows("holdfast_preset_frames_total{preset=\"fast\"} 0")) << "from the start";
+  EXPECT_FALSE(shows("holdfast_stage_seconds_sum{stage=\"decode\"} 0"));
+  // Planes of 9 words a pixel come, of 4 go back; messages add a little.
+  const double pixels = 37 * 21;
+  EXPECT_NEAR(value("holdfast_received_bytes_total"), 6 * 36 * pixels, 6 * 1500);
+  EXPECT_NEAR(value("holdfast_sent_bytes_total"), 5 * 16 * pixels, 6 * 1500);
   EXPECT_TRUE(shows("holdfast_sessions 1"));
   EXPECT_TRUE(shows("holdfast_streams 1"));
   RawStream wrong(client);
@@ -208,6 +203,15 @@ TEST(Configuration, NamesAHalfOfTlsAndAMissingFile) {
   EXPECT_EQ(refusal(config),
             "TLS certificate /nowhere/cert.pem must be a file that can be read, but it is not "
             "readable");
+}
+
+TEST(Configuration, RefusesALimitForEachTokenWithoutTokens) {
+  server::ServerConfig config;
+  config.limits.max_sessions_per_token = 3;
+  EXPECT_NE(refusal(config).find("must come with a token file"), std::string::npos);
+  config.limits.max_sessions_per_token = 0;
+  config.limits.max_frames_per_second = -1;
+  EXPECT_NE(refusal(config).find("frames per second must be at least 0"), std::string::npos);
 }
 
 TEST(Configuration, FlagsGoBeforeTheFileAndTheFileBeforeTheEnvironment) {

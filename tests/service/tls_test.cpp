@@ -1,5 +1,7 @@
 // Encrypted connections. The keys in tests/service/tls are for these tests only.
+#include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "tests/service/served.h"
 #include "tests/service/server_process.h"
@@ -75,6 +77,42 @@ TEST_F(Tls, NamesAFileThatIsNotThere) {
   start();
   options.tls.ca = "/nowhere/ca.pem";
   EXPECT_THROW(Session session(options), InputError);
+}
+
+TEST_F(Tls, ShowsARenewedCertificateToNewConnectionsWithoutARestart) {
+  const test::SocketAddress place;
+  config.tls.certificate = (place.directory() / "cert.pem").string();
+  config.tls.key = (place.directory() / "key.pem").string();
+  // Each file is replaced in one step, as those who renew certificates do.
+  const auto install = [&](const std::string& name) {
+    for (const auto& [file, target] : {std::pair(pem((name + ".key").c_str()), config.tls.key),
+                                       {pem((name + ".pem").c_str()), config.tls.certificate}}) {
+      std::filesystem::copy_file(file, target + ".new");
+      std::filesystem::rename(target + ".new", target);
+    }
+  };
+  // Whether a new connection finds, after some time, the certificate of that authority.
+  const auto shows = [&](const char* authority) {
+    options.tls.ca = pem(authority);
+    for (int i = 0; i < 40; ++i) {
+      if (connects()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    }
+    return false;
+  };
+  install("server");
+  start();
+  ASSERT_TRUE(connects());
+  Session open(options);
+  install("other");  // which is its own authority
+  EXPECT_TRUE(shows("other.pem"));
+  options.tls.ca = pem("ca.pem");
+  EXPECT_FALSE(connects()) << "the old certificate is not shown any more";
+  install("server");
+  EXPECT_TRUE(shows("ca.pem"));
+  open.submit(test::small_frame(frames, 0));
+  EXPECT_FALSE(open.receive()->error) << "a connection that is open stays as it is";
+  EXPECT_EQ(open.reconnects(), 0);
 }
 
 TEST(BearerToken, OfTheClientLibraryAdmits) {
