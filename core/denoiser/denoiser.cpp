@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
@@ -12,6 +13,7 @@
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
+#include "core/denoiser/switch_plan.h"
 #include "core/frame/error.h"
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
@@ -76,6 +78,8 @@ class Denoiser::Impl {
     report.index = last_index = frame.index;
     has_past = has_past && !frame.cut && plan.history;
     report.history_reset = !has_past;
+    if (next_plan) follow_next_plan(timer);
+    report.preset = config.preset;
     now = 1 - now;
     load_guides(frame, report);
     timer.end("guides", 10);
@@ -103,6 +107,23 @@ class Denoiser::Impl {
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return report;
+  }
+
+  void set_preset(const std::string& preset) {
+    DenoiserConfig other = config;
+    other.preset = preset;
+    Plan next = Plan::make(other);
+    next_plan.reset();
+    if (preset != config.preset) next_plan = std::move(next);
+  }
+
+  void follow_next_plan(StageTimer& timer) {
+    std::string preset = next_plan->preset.name;
+    switch_plan(config, *next_plan, has_past ? &guides[now] : nullptr,
+                {plan, scratch, surface, half, filters});
+    config.preset = std::move(preset);
+    next_plan.reset();
+    timer.end("preset", 0);
   }
 
   void load_guides(const Frame& frame, FrameReport& report) {
@@ -207,6 +228,7 @@ class Denoiser::Impl {
 
   DenoiserConfig config;
   Plan plan;
+  std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
   Guides guides[2];
   int now = 0;  ///< index of the current frame's guides
@@ -230,6 +252,8 @@ Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;
 FrameReport Denoiser::filter(const Frame& frame, PlaneSet& results) {
   return impl_->filter(frame, results);
 }
+
+void Denoiser::set_preset(const std::string& preset) { impl_->set_preset(preset); }
 
 void Denoiser::reset() { impl_->has_past = false; }
 

@@ -17,6 +17,7 @@ struct Preset {
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;  ///< indirect light is filtered at half resolution
   bool half_glossy = false;    ///< reflections likewise
+  int more_levels = 0;         ///< of the a-trous filter of radiance, beside the recipe's
 };
 
 /// All presets, fastest first.
