@@ -173,7 +173,6 @@ void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config,
 void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
                         v1::FrameResult& result) {
   result.set_index(slot.frame.index);
-  result.set_preset(config.denoiser.preset);
   v1::FrameTiming& timing = *result.mutable_timing();
   timing.set_receive_ms(ms_between(slot.begun, slot.ended));
   timing.set_wait_ms(ms_between(slot.ended, slot.started));
@@ -185,6 +184,7 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
   result.set_repeated(slot.repeated);
   result.set_dropped(slot.answer->dropped);
   if (slot.answer->dropped) return;
+  result.set_preset(report.preset);
   timing.set_core_ms(report.ms);
   for (const StageTime& stage : report.stages) {
     v1::StageTime& out = *timing.add_stages();

@@ -137,7 +137,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
       slot.answer = session_->repeat(slot.frame.index, slot.epoch);
       slot.repeated = slot.answer != nullptr;
       if (!slot.answer && late) slot.answer = session_->drop(slot.frame, slot.epoch);
-      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch);
+      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch, slot.ended);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
@@ -159,8 +159,9 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
     state_.log->warn("event=frame_error session={} frame={} error=\"{}\"", session_->id(),
                      slot.frame.index, slot.error->message());
   else
-    state_.log->debug("event=frame session={} frame={} core_ms={:.2f} reset={}", session_->id(),
-                      slot.frame.index, slot.answer->report.ms, slot.answer->report.history_reset);
+    state_.log->debug("event=frame session={} frame={} preset={} core_ms={:.2f} reset={}",
+                      session_->id(), slot.frame.index, slot.answer->report.preset,
+                      slot.answer->report.ms, slot.answer->report.history_reset);
 }
 
 // --- writing -------------------------------------------------------------------------------------

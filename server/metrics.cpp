@@ -64,6 +64,7 @@ const char* name_of(ResetReason reason) {
 Metrics::Metrics()
     : registry_(std::make_shared<prometheus::Registry>()),
       frames_(counters(*registry_, "holdfast_frames_total", "Frames answered, by result")),
+      presets_(counters(*registry_, "holdfast_preset_frames_total", "Frames filtered, by preset")),
       resets_(counters(*registry_, "holdfast_history_resets_total",
                        "Frames whose history started anew, by reason")),
       refusals_(counters(*registry_, "holdfast_refusals_total",
@@ -85,6 +86,7 @@ Metrics::Metrics()
   // Series exist from the start, so that a rate over them does not miss the first event.
   for (const char* result : {"ok", "repeated", "dropped", "invalid", "failed"})
     frames_.Add({{"result", result}});
+  for (const std::string& preset : preset_names()) presets_.Add({{"preset", preset}});
   for (const char* reason : {"first", "cut", "epoch", "failure"}) resets_.Add({{"reason", reason}});
   for (const char* reason : {"invalid", "unknown_session", "wrong_token", "taken_over", "limit",
                              "draining", "unauthenticated", "failure"})
@@ -103,6 +105,7 @@ void Metrics::filtered(const FrameSlot& slot) {
   const bool dropped = slot.answer->dropped;
   frames_.Add({{"result", slot.repeated ? "repeated" : dropped ? "dropped" : "ok"}}).Increment();
   if (slot.repeated || dropped) return;
+  presets_.Add({{"preset", slot.answer->report.preset}}).Increment();
   filter_.Observe(slot.answer->report.ms / 1000);
   if (slot.answer->reset != ResetReason::kNone)
     resets_.Add({{"reason", name_of(slot.answer->reset)}}).Increment();

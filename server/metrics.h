@@ -18,6 +18,7 @@ namespace holdfast::server {
 /// number of series is fixed. Every function may be called from any thread.
 ///
 ///   holdfast_frames_total{result}         ok, repeated, dropped, invalid, failed
+///   holdfast_preset_frames_total{preset}  frames filtered, by preset
 ///   holdfast_stage_seconds{stage}         receive, wait, filter, send: histograms
 ///   holdfast_history_resets_total{reason} first, cut, epoch, failure
 ///   holdfast_refusals_total{reason}       invalid, unknown_session, wrong_token, taken_over,
@@ -51,7 +52,7 @@ class Metrics {
   using Gauges = prometheus::Family<prometheus::Gauge>;
 
   const std::shared_ptr<prometheus::Registry> registry_;
-  Counters &frames_, &resets_, &refusals_, &ends_;
+  Counters &frames_, &presets_, &resets_, &refusals_, &ends_;
   prometheus::Family<prometheus::Histogram>& stages_;
   prometheus::Histogram &receive_, &wait_, &filter_, &send_;
   prometheus::Gauge &sessions_, &streams_, &session_bytes_, &resident_bytes_, &ready_;
