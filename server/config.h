@@ -49,6 +49,8 @@ struct ServerConfig {
   TlsConfig tls;
   std::string token_file;  ///< bearer tokens of clients, one a line; empty = none asked for
   SessionLimits limits;
+  /// Measure the presets at start; else when the first session with a budget is made.
+  bool calibrate = false;
 };
 
 /// Throws InputError naming the first value that breaks a rule. Opens no port.

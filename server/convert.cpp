@@ -143,6 +143,9 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
     throw InputError("budget", "must be finite and at least 0 ms",
                      std::to_string(config.budget_ms));
+  if (config.budget_ms > 0 && core.preset == "reference")
+    throw InputError("budget", "must be 0 with preset reference, which no other can stand in for",
+                     std::to_string(config.budget_ms));
   config.latest = request.late_frames() == v1::LATE_FRAMES_LATEST;
   config.results = results_from(request, core);
   return config;
@@ -173,7 +176,6 @@ void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config,
 void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
                         v1::FrameResult& result) {
   result.set_index(slot.frame.index);
-  result.set_preset(config.denoiser.preset);
   v1::FrameTiming& timing = *result.mutable_timing();
   timing.set_receive_ms(ms_between(slot.begun, slot.ended));
   timing.set_wait_ms(ms_between(slot.ended, slot.started));
@@ -185,6 +187,7 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
   result.set_repeated(slot.repeated);
   result.set_dropped(slot.answer->dropped);
   if (slot.answer->dropped) return;
+  result.set_preset(report.preset);
   timing.set_core_ms(report.ms);
   for (const StageTime& stage : report.stages) {
     v1::StageTime& out = *timing.add_stages();

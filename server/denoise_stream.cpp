@@ -173,7 +173,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
       slot.answer = session_->repeat(slot.frame.index, slot.epoch);
       slot.repeated = slot.answer != nullptr;
       if (!slot.answer && late) slot.answer = session_->drop(slot.frame, slot.epoch);
-      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch);
+      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch, slot.ended);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
@@ -196,8 +196,9 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
     state_.log->warn("event=frame_error session={} frame={} error=\"{}\"", session_->id(),
                      slot.frame.index, slot.error->message());
   else
-    state_.log->debug("event=frame session={} frame={} core_ms={:.2f} reset={}", session_->id(),
-                      slot.frame.index, slot.answer->report.ms, slot.answer->report.history_reset);
+    state_.log->debug("event=frame session={} frame={} preset={} core_ms={:.2f} reset={}",
+                      session_->id(), slot.frame.index, slot.answer->report.preset,
+                      slot.answer->report.ms, slot.answer->report.history_reset);
 }
 
 /// For the live page, if somebody looks at it.
@@ -244,7 +245,7 @@ bool DenoiseStream::next_response() {
     FrameSlot& sent = *sending_.front();
     sending_.pop_front();
     const Clock::time_point now = Clock::now();
-    state_.metrics.sent(sent, preset_, now);
+    state_.metrics.sent(sent, now);
     watch_->sent(sent, preset_, now);
     release(sent);
   }

@@ -26,6 +26,7 @@ sigset_t block_stop_signals() {
 
 int main(int argc, char** argv) {
   holdfast::server::ServerConfig config;
+  config.calibrate = true;
   bool only_check = false;
   CLI::App app{"holdfast-server: denoises ray-traced frames for clients over gRPC"};
   app.set_version_flag("--version", std::string("holdfast-server ") + holdfast::server::kVersion);

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <fstream>
 
 #include <prometheus/text_serializer.h>
@@ -119,18 +118,15 @@ void Metrics::filtered(const FrameSlot& slot) {
   const bool dropped = slot.answer->dropped;
   frames_.Add({{"result", slot.repeated ? "repeated" : dropped ? "dropped" : "ok"}}).Increment();
   if (slot.repeated || dropped) return;
+  presets_.Add({{"preset", slot.answer->report.preset}}).Increment();
   filter_.Observe(slot.answer->report.ms / 1000);
   if (slot.answer->reset != ResetReason::kNone)
     resets_.Add({{"reason", name_of(slot.answer->reset)}}).Increment();
 }
 
-void Metrics::sent(const FrameSlot& slot, const std::string& preset, FrameSlot::TimePoint now) {
+void Metrics::sent(const FrameSlot& slot, FrameSlot::TimePoint now) {
   encode_.Observe(std::chrono::duration<double>(slot.encode).count());
   send_.Observe(seconds(slot.answered, now));
-  if (slot.error || slot.repeated || slot.answer->dropped) return;
-  const auto& names = preset_names();  // no series for a name that is none of these
-  if (std::find(names.begin(), names.end(), preset) != names.end())
-    presets_.Add({{"preset", preset}}).Increment();
 }
 
 void Metrics::refused(std::exception_ptr error) {

@@ -34,8 +34,8 @@ class Metrics {
 
   /// A frame has left the filter.
   void filtered(const FrameSlot& slot);
-  /// Its answer, which names the preset that filtered it, has been sent.
-  void sent(const FrameSlot& slot, const std::string& preset, FrameSlot::TimePoint now);
+  /// Its answer has been sent.
+  void sent(const FrameSlot& slot, FrameSlot::TimePoint now);
   /// Bytes of one message of a stream.
   void received_bytes(std::size_t bytes) { received_.Increment(static_cast<double>(bytes)); }
   void sent_bytes(std::size_t bytes) { sent_.Increment(static_cast<double>(bytes)); }

@@ -5,6 +5,7 @@
 
 #include <spdlog/logger.h>
 
+#include "server/calibrated_costs.h"
 #include "server/config.h"
 #include "server/metrics.h"
 #include "server/scheduler.h"
@@ -22,7 +23,10 @@ struct ServiceState {
         tokens(c.token_file),
         sessions(c.limits),
         streams(c.max_streams),
-        scheduler(c.threads) {}
+        scheduler(c.threads),
+        costs(scheduler) {
+    if (c.calibrate) costs.get();
+  }
 
   const ServerConfig config;
   const std::shared_ptr<spdlog::logger> log;
@@ -31,6 +35,7 @@ struct ServiceState {
   SessionTable sessions;
   StreamRegistry streams;
   Scheduler scheduler;
+  CalibratedCosts costs;
   std::atomic<bool> draining{false};
   const std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };

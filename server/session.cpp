@@ -15,9 +15,13 @@ Session::Session(std::string id, std::string token, SessionConfig config, int re
       denoiser_(config_.denoiser),
       denoiser_bytes_(denoiser_->memory_bytes()),
       plan_text_(denoiser_->plan_text()),
-      ledger_(static_cast<std::size_t>(remembered)) {}
+      ledger_(static_cast<std::size_t>(remembered)) {
+  if (!config_.preset_ms.empty()) chooser_.emplace(config_.preset_ms, config_.budget_ms);
+}
 
-std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch) {
+std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch,
+                                              std::optional<TimePoint> complete) {
+  const TimePoint start = std::chrono::steady_clock::now();
   // Taken for this frame only, also if it is refused: a bad transform must not spoil all that
   // follow.
   if (const auto carried = std::exchange(carried_, {}); carried && carried->epoch == epoch) {
@@ -35,8 +39,10 @@ std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch)
       if (epoch > epoch_) next_reset_ = ResetReason::kEpoch;
       epoch_ = epoch;
     }
+    if (chooser_) choose_preset();
     const std::shared_ptr<Answer> answer = ledger_.fresh();
     answer->report = denoiser_->filter(frame, answer->results);
+    if (chooser_) note_cost(answer->report, complete, start);
     answer->epoch = epoch;
     if (answer->report.history_reset)
       answer->reset =
@@ -57,6 +63,27 @@ std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch)
     count_error();
     throw;
   }
+}
+
+void Session::choose_preset() {
+  const std::string& preset = kernel_preset_names()[chooser_->preset()];
+  if (preset != denoiser_->config().preset) denoiser_->set_preset(preset);
+}
+
+/// What a frame has cost of the budget: its time in the core, but for that of changing the preset,
+/// and the time for which other sessions kept the core from it. The wait for the session's own
+/// frames before it is the client's pace.
+void Session::note_cost(const FrameReport& report, std::optional<TimePoint> complete,
+                        TimePoint start) {
+  double core_ms = report.ms;
+  for (const StageTime& stage : report.stages)
+    if (stage.stage == "preset") core_ms -= stage.ms;
+  double waited_ms = 0;
+  if (complete)
+    waited_ms =
+        std::chrono::duration<double, std::milli>(start - std::max(*complete, last_end_)).count();
+  last_end_ = std::chrono::steady_clock::now();
+  chooser_->measured(core_ms, waited_ms);
 }
 
 std::shared_ptr<const Answer> Session::drop(const Frame& frame, std::uint64_t epoch) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "core/denoiser/denoiser.h"
 #include "server/answer.h"
+#include "server/preset_chooser.h"
 #include "server/scheduler.h"
 
 namespace holdfast::server {
@@ -17,8 +19,10 @@ namespace holdfast::server {
 /// What a client fixes when it makes a session.
 struct SessionConfig {
   DenoiserConfig denoiser;
-  std::vector<PlaneId> results;  ///< result planes to send, in order
-  double budget_ms = 0;          ///< 0 = none
+  std::vector<PlaneId> results;   ///< result planes to send, in order
+  double budget_ms = 0;           ///< 0 = none
+  std::vector<double> preset_ms;  ///< with a budget: what a frame should take in each preset,
+                                  ///< fastest first, up to that of `denoiser`
   std::string wire = "exact";
   bool latest = false;  ///< a frame is dropped if a newer one waits behind it
 };
@@ -35,6 +39,8 @@ struct SessionCounters {
 /// One client's configuration and history.
 class Session {
  public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
   /// `remembered`: answers kept for frames that come again. Throws InputError for a configuration
   /// that the core refuses.
   Session(std::string id, std::string token, SessionConfig config, int remembered);
@@ -46,8 +52,10 @@ class Session {
   /// Filters a frame; called from jobs of `strand()` only. A greater epoch than that of the frame
   /// before starts the history anew. Throws InputError for a frame that breaks a rule (history
   /// untouched); any other exception resets the history.
-  /// What dropped frames left for it is added to the frame.
-  std::shared_ptr<const Answer> filter(Frame& frame, std::uint64_t epoch);
+  /// What dropped frames left for it is added to the frame. With a budget, the preset is chosen;
+  /// `complete`: when the frame had come whole, so that it is known how long others let it wait.
+  std::shared_ptr<const Answer> filter(Frame& frame, std::uint64_t epoch,
+                                       std::optional<TimePoint> complete = {});
   /// Drops a frame: its cut and transforms are left for the next one. Null if the frame is not
   /// newer than the last, which `filter` then says. Called from jobs of `strand()` only.
   std::shared_ptr<const Answer> drop(const Frame& frame, std::uint64_t epoch);
@@ -64,6 +72,9 @@ class Session {
   const std::string& plan_text() const { return plan_text_; }
 
  private:
+  void choose_preset();
+  void note_cost(const FrameReport& report, std::optional<TimePoint> complete, TimePoint start);
+
   /// What dropped frames said that the next one must know.
   struct Carried {
     std::uint64_t epoch = 0;
@@ -77,6 +88,8 @@ class Session {
   std::optional<Denoiser> denoiser_;  ///< always there but while it is made anew
   std::size_t denoiser_bytes_;
   std::string plan_text_;
+  std::optional<PresetChooser> chooser_;  ///< with a budget
+  TimePoint last_end_{};                  ///< when the last frame was filtered
   AnswerLedger ledger_;
   std::optional<Carried> carried_;
   std::uint64_t epoch_ = 0;                       ///< of the history

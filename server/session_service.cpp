@@ -70,7 +70,9 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
   return answer(state_.metrics, context, [&] {
     const std::string owner = state_.tokens.check(authorization(*context));
     if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
-    const auto session = state_.sessions.create(session_config_from(*request), owner);
+    SessionConfig asked = session_config_from(*request);
+    if (asked.budget_ms > 0) asked.preset_ms = expected_ms(state_.costs.get(), asked.denoiser);
+    const auto session = state_.sessions.create(std::move(asked), owner);
     const SessionConfig& config = session->config();
     response->set_session_id(session->id());
     response->set_token(session->token());

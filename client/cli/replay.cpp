@@ -1,5 +1,6 @@
 #include "client/cli/replay.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -96,6 +97,8 @@ class Replay {
     const client::Traffic traffic = session_.traffic();
     result_.bytes_in = traffic.sent;
     result_.bytes_out = traffic.received;
+    const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+    result_.preset = std::max_element(result_.presets.begin(), result_.presets.end(), fewer)->first;
     session_.close();
     return result_;
   }
@@ -119,7 +122,7 @@ class Replay {
     session_.recycle(std::move(output->planes));
     result_.core_ms.push_back(output->timing.core);
     result_.total_ms.push_back(output->timing.total);
-    result_.preset = output->preset;
+    ++result_.presets[output->preset];
     for (const auto& repair : output->repaired) result_.non_finite_in += repair.values;
     result_.non_finite_out += output->non_finite_out;
     progress_.update(++result_.frames);
@@ -153,6 +156,7 @@ nlohmann::ordered_json replay_json(const ReplayResult& result) {
   return {{"frames", result.frames},
           {"recipe", result.recipe},
           {"preset", result.preset},
+          {"presets", result.presets},
           {"width", result.width},
           {"height", result.height},
           {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},

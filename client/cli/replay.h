@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ struct ReplayOptions {
 /// What happened, for all frames in order.
 struct ReplayResult {
   std::int64_t frames = 0;
-  std::string recipe, preset;
+  std::string recipe, preset;          ///< the preset of most frames
+  std::map<std::string, int> presets;  ///< frames by preset
   int width = 0, height = 0;
   std::vector<double> core_ms;       ///< of each frame, inside the denoiser
   std::vector<double> total_ms;      ///< from submit to the last byte back, queueing included

@@ -8,9 +8,11 @@
 #include "client/cli/study_scenes.h"
 #include "client/cli/study_stability.h"
 #include "client/cli/study_text.h"
+#include "client/cli/study_trade.h"
 #include "client/cli/study_vectors.h"
 #include "client/measure/claims_text.h"
 #include "client/measure/markdown.h"
+#include "client/measure/trade_text.h"
 #include "core/denoiser/denoiser.h"
 #include "core/frame/error.h"
 
@@ -20,8 +22,8 @@ namespace {
 struct Arguments {
   QualitySettings quality;
   StudyOptions study;
-  std::string size, json, markdown;
-  bool with_quality = false, with_vectors = false, with_stability = false, with_oracle = false,
+  std::string size, json, markdown, svg;
+  bool with_quality = false, with_trade = false, with_vectors = false, with_stability = false, with_oracle = false,
        quick = false;
   bool with_long = false, with_large = false;
 
@@ -90,6 +92,31 @@ void run_quality(Arguments& arguments) {
     std::fprintf(stderr, "%sreport: %s\n", steps_text(study.steps).c_str(), page.c_str());
 }
 
+void run_trade(Arguments& arguments) {
+  QualitySettings& quality = arguments.quality;
+  StudyOptions& options = arguments.study;
+  if (options.out.empty()) throw InputError("option --output", "is needed with --trade", "absent");
+  if (!arguments.size.empty())
+    parse_image_size("option --size", arguments.size, quality.width, quality.height);
+  if (options.recipes == recipe_names())
+    options.recipes = {"reliable", "spatial", "clamp", "svgf", "paper"};
+  for (const std::string& scene : quality.scenes)
+    options.scenes.push_back(quality_render(scene, quality));
+  std::vector<StudyStep> steps;
+  const auto scenes = study_trade(options, quality.frames, steps);
+  const auto page = options.out / "trade.html";
+  measure::write_trade_report(page, scenes);
+  if (!arguments.svg.empty()) measure::write_trade_svg(arguments.svg, scenes);
+  if (!arguments.json.empty()) {
+    nlohmann::ordered_json json = measure::trade_json(scenes);
+    for (const StudyStep& step : steps) json["seconds"][step.name] = step.seconds;
+    write_json_file(arguments.json, json);
+  }
+  write_tables(arguments, measure::trade_markdown(scenes));
+  if (!options.quiet)
+    std::fprintf(stderr, "%sreport: %s\n", steps_text(steps).c_str(), page.c_str());
+}
+
 /// Options that mean nothing to other studies; recipes are nothing to one of vectors alone.
 void add_quality_options(CLI::App& command, CLI::Option* with_vectors, CLI::Option* with_stability,
                          CLI::Option* with_oracle, QualitySettings& quality, StudyOptions& study) {
@@ -140,6 +167,9 @@ void add_study(CLI::App& app) {
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");
+  CLI::Option* with_trade = subject.add_flag(
+      "--trade", arguments->with_trade,
+      "Speed against accuracy: presets and what they choose between, and the best of them");
   CLI::Option* with_vectors = subject.add_flag(
       "--vectors", arguments->with_vectors,
       "Motion vectors alone: the frame before without noise, warped by each of them");
@@ -159,6 +189,8 @@ void add_study(CLI::App& app) {
   command
       .add_flag("--quick", arguments->quick, "Of --vectors: fewer roughnesses, frames and samples")
       ->needs(with_vectors);
+  command.add_option("--svg", arguments->svg, "Of --trade: write the plot to this file")
+      ->needs(with_trade);
   command.add_option("--json", arguments->json, "Write the machine-readable result to this file");
   command.add_option("--markdown", arguments->markdown,
                      "Write the tables to this file, between its lines <!-- table:begin --> and "
@@ -169,6 +201,8 @@ void add_study(CLI::App& app) {
       run_vectors(*arguments);
     else if (arguments->with_stability || arguments->with_oracle)
       run_stability(*arguments);
+    else if (arguments->with_trade)
+      run_trade(*arguments);
     else
       run_quality(*arguments);
   });

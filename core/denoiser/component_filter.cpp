@@ -73,19 +73,36 @@ void clear_residual(ComponentHistory& history) {
 
 Scratch::Scratch(int width, int height, const Plan& plan, const Plan::Grid& grid, bool with_debug)
     : noisy(width, height, plan.full.any_radiance || plan.half.any_radiance ? 3 : 1) {
+  grow(width, height, plan, grid, with_debug);
+}
+
+void Scratch::grow(int width, int height, const Plan& plan, const Plan::Grid& grid,
+                   bool with_debug) {
   if (!grid.any) return;
-  measured = Channels<float>(width, height, grid.any_footprint ? kMeasured : kField);
-  means = Channels<float>(width, height, grid.any_footprint ? kMeasured : kField);
-  measured_activity = ActivityMap(width, height);
-  window = WindowScratch(width, height);
-  filter = FilterScratch(width, height);
-  if (grid.any_footprint) footprint = Channels<float>(width, height, 3);
-  if (grid.any_effect) effect = EffectHistory(width, height);
-  if (plan.recipe.blending == Blending::kExpectedError) {
-    blend = BlendScratch(width, height);
-    if (grid.any_radiance) radiance_blend = RadianceBlendScratch(width, height, 2);
+  const int channels = grid.any_footprint ? kMeasured : kField;
+  for (Channels<float>* images : {&measured, &means})
+    if (images->count() < channels) *images = Channels<float>(width, height, channels);
+  if (!filter.even) {
+    measured_activity = ActivityMap(width, height);
+    window = WindowScratch(width, height);
+    filter = FilterScratch(width, height);
   }
-  if (with_debug) debug = Channels<float>(width, height, kDebugChannels);
+  if (grid.any_footprint && !footprint) footprint = Channels<float>(width, height, 3);
+  if (grid.any_effect && !effect.taps) effect = EffectHistory(width, height);
+  if (plan.recipe.blending == Blending::kExpectedError) {
+    if (!blend.bias) blend = BlendScratch(width, height);
+    if (grid.any_radiance && !radiance_blend.means)
+      radiance_blend = RadianceBlendScratch(width, height, 2);
+  }
+  if (with_debug && !debug) debug = Channels<float>(width, height, kDebugChannels);
+}
+
+void Scratch::trim(const Plan::Grid& grid) noexcept {
+  if (!grid.any_radiance) radiance_blend = {};
+  if (grid.any) return;
+  Channels<float> kept = std::move(noisy);
+  *this = Scratch();
+  noisy = std::move(kept);
 }
 
 std::size_t Scratch::bytes() const {
@@ -109,6 +126,11 @@ ComponentFilter::ComponentFilter(const Plan::Entry& entry, const Recipe& recipe,
                                          : HistoryExtras::kNone;
   if (entry.cones) cones_ = ConeHistory(width, height, recipe.indirect_basis);
   for (auto& history : history_) history = ComponentHistory(width, height, channels_, extras);
+}
+
+void ComponentFilter::change(Recipe&& recipe, ConeHistory* cones) noexcept {
+  recipe_ = std::move(recipe);
+  if (cones != nullptr) cones_ = std::move(*cones);
 }
 
 void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& out) {

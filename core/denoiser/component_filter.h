@@ -34,6 +34,10 @@ struct Scratch {
   /// `grid`: the components that it is for. Without any, there is `noisy` alone: what is filtered
   /// at another resolution comes in here, too.
   Scratch(int width, int height, const Plan& plan, const Plan::Grid& grid, bool debug);
+  /// Adds the images that another plan of the same session needs; the others stay as they are.
+  void grow(int width, int height, const Plan& plan, const Plan::Grid& grid, bool debug);
+  /// Lets go of images that only components of this resolution, or its radiance, would need.
+  void trim(const Plan::Grid& grid) noexcept;
   std::size_t bytes() const;
 };
 
@@ -59,10 +63,17 @@ class ComponentFilter {
   /// For images of that size.
   ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width, int height);
 
+  /// Works by another recipe from the next frame on: that of another preset. `cones` replace what
+  /// was kept by cones; null: that goes on.
+  void change(Recipe&& recipe, ConeHistory* cones) noexcept;
+
   /// Filters `scratch.noisy` into `out`. Fills `scratch.debug` if it is there.
   void run(const ComponentInput& input, Scratch& scratch, Plane& out);
 
   Component component() const { return component_; }
+  /// What the last frame left, for the next one.
+  const ComponentHistory& history() const { return history_[now_]; }
+  ComponentHistory& history() { return history_[now_]; }
   /// Mean of the samples behind the pixels on surfaces, after the last frame.
   double mean_history_frames() const { return mean_history_frames_; }
   /// Share of the tiles whose light has changed though nothing moved, in the last frame.

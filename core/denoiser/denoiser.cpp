@@ -13,6 +13,7 @@
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
+#include "core/denoiser/switch_plan.h"
 #include "core/frame/error.h"
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
@@ -83,6 +84,8 @@ class Denoiser::Impl {
     report.index = last_index = frame.index;
     has_past = has_past && !frame.cut && plan.history;
     report.history_reset = !has_past;
+    if (next_plan) follow_next_plan(timer);
+    report.preset = config.preset;
     if (oracle) {
       for (const PlaneId id : announced) results.add(id, config.width, config.height);
       oracle->filter(frame, has_past, results, report, timer);
@@ -119,6 +122,26 @@ class Denoiser::Impl {
     }
     report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
     timer.end("composite", composite_channels(frame.planes));
+  }
+
+  void set_preset(const std::string& preset) {
+    DenoiserConfig other = config;
+    other.preset = preset;
+    Plan next = Plan::make(other);
+    if (preset != config.preset && (next.preset.oracle || plan.preset.oracle))
+      throw InputError("change of preset", "must not be to or from reference",
+                       "'" + config.preset + "' to '" + preset + "'");
+    next_plan.reset();
+    if (preset != config.preset) next_plan = std::move(next);
+  }
+
+  void follow_next_plan(StageTimer& timer) {
+    std::string preset = next_plan->preset.name;
+    switch_plan(config, *next_plan, has_past ? &guides[now] : nullptr,
+                {plan, scratch, surface, half, filters});
+    config.preset = std::move(preset);
+    next_plan.reset();
+    timer.end("preset", 0);
   }
 
   void load_guides(const Frame& frame, FrameReport& report) {
@@ -223,6 +246,7 @@ class Denoiser::Impl {
 
   DenoiserConfig config;
   Plan plan;
+  std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
   Guides guides[2];
   int now = 0;  ///< index of the current frame's guides
@@ -247,6 +271,8 @@ Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;
 FrameReport Denoiser::filter(const Frame& frame, PlaneSet& results) {
   return impl_->filter(frame, results);
 }
+
+void Denoiser::set_preset(const std::string& preset) { impl_->set_preset(preset); }
 
 void Denoiser::reset() { impl_->has_past = false; }
 
@@ -315,6 +341,15 @@ bool recipe_uses(std::string_view recipe, PlaneKind kind) {
 
 const std::vector<std::string>& preset_names() {
   static const std::vector<std::string> names = names_of(all_presets());
+  return names;
+}
+
+const std::vector<std::string>& kernel_preset_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<Preset> presets = all_presets();
+    std::erase_if(presets, [](const Preset& preset) { return preset.oracle; });
+    return names_of(presets);
+  }();
   return names;
 }
 

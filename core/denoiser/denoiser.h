@@ -25,6 +25,9 @@ struct DenoiserConfig {
   /// once, or "none" alone; empty = the preset's choice. A component that the session lacks, or
   /// that has gradient samples, is not affected.
   std::vector<std::string> half_resolution;
+  int kernel_radius =
+      0;                ///< likewise, of the a-trous kernel: 1 (3x3 taps), 2 (5x5); 0 = its choice
+  int more_levels = 0;  ///< a-trous levels of radiance added to the recipe's, -3..1
   std::uint64_t seed = 0;
   bool debug_planes = false;  ///< also return motion, history and confidence of each component
 };
@@ -52,7 +55,8 @@ struct NoticedChange {
 /// What happened to one frame.
 struct FrameReport {
   std::int64_t index = 0;
-  double ms = 0;  ///< wall time inside the core
+  std::string preset;  ///< that it was filtered with
+  double ms = 0;       ///< wall time inside the core
   std::vector<StageTime> stages;
   bool history_reset = false;          ///< first frame, cut or reset
   std::vector<NoticedChange> changes;  ///< where the recipe looks for them; most frames: none
@@ -62,7 +66,8 @@ struct FrameReport {
 };
 
 /// Filters the frames of one session in order. Owns the history; allocates no image per frame after
-/// the first. Not thread-safe; one instance serves one session, many instances share the pool.
+/// the first, unless the preset changes. Not thread-safe; one instance serves one session, many
+/// instances share the pool.
 class Denoiser {
  public:
   /// Throws InputError naming what is wrong with `config`.
@@ -77,9 +82,17 @@ class Denoiser {
   /// non-finite matrix): then neither history nor `results` has changed.
   FrameReport filter(const Frame& frame, PlaneSet& results);
 
+  /// Changes the preset from the next frame on. History comes along, so that the same frames under
+  /// the same sequence of presets give the same bits; core/denoiser/switch_plan.h says how. Where
+  /// resolution or basis change, that frame allocates images and reports a stage "preset". Throws
+  /// InputError for an unknown name and for `reference`, which shares no history with the others;
+  /// then nothing has changed.
+  void set_preset(const std::string& preset);
+
   /// Forgets all history; the next frame starts anew. Where objects and lights stand is kept.
   void reset();
 
+  /// As it was made, but for the preset, which is that of the last frame.
   const DenoiserConfig& config() const;
   /// Bytes held for history and scratch.
   std::size_t memory_bytes() const;
@@ -99,8 +112,10 @@ const std::vector<std::string>& recipe_names();
 bool recipe_uses(std::string_view recipe, PlaneKind kind);
 /// `reliable` with one part taken away each, accepted wherever a recipe is named: for measurements.
 const std::vector<std::string>& ablation_names();
-/// Names of the presets, fastest first.
+/// Names of the presets, fastest first; `reference` is the last.
 const std::vector<std::string>& preset_names();
+/// Those that may be chosen by speed and changed between frames: all but `reference`.
+const std::vector<std::string>& kernel_preset_names();
 /// Result planes of a configuration: the composite, then each component's planes.
 std::vector<PlaneId> result_planes(const DenoiserConfig& config);
 

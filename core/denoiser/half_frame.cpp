@@ -58,15 +58,19 @@ void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const Plan
   now_ = 1 - now_;
   has_past_ = has_past;
   scene_.follow_halved(scene);
-  Guides& now = guides_[now_];
-  now.view = scene_.view();
-  now.rays = now.view.rays.cast<float>();
-  choose_representatives(full, grid_);
-  halve_guides(full, grid_, now);
+  remember(full);
   if (!has_past) return;
   const Plane* motion = halved(PlaneKind::kMotion, planes);
   if (motion != nullptr) halve_vectors();
-  trace_surface_history({now, guides_[1 - now_], scene_}, motion, surface_);
+  trace_surface_history({guides_[now_], guides_[1 - now_], scene_}, motion, surface_);
+}
+
+void HalfFrame::remember(const Guides& full) {
+  Guides& half = guides_[now_];
+  half.view = full.view.halved();
+  half.rays = half.view.rays.cast<float>();
+  choose_representatives(full, grid_);
+  halve_guides(full, grid_, half);
 }
 
 /// The representatives of a plane, or null if the session lacks it.

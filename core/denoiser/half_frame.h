@@ -17,6 +17,12 @@ class HalfFrame {
   /// before stay. `has_past`: there is a frame before.
   void advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes, bool has_past);
 
+  /// Takes the guides of a frame that was filtered without this one, as the frame before.
+  void remember(const Guides& full);
+  /// The last frame's quads and guides.
+  const HalfGrid& grid() const { return grid_; }
+  const Guides& guides() const { return guides_[now_]; }
+
   /// Takes a component's samples `noisy`, of the frame's size, and what of `planes` belongs to
   /// them. Returns its input; `scratch().noisy` holds the quads' means.
   ComponentInput take(const Plan::Entry& entry, const Channels<float>& noisy,

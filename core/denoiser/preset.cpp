@@ -7,6 +7,8 @@
 namespace holdfast {
 namespace {
 
+constexpr int kFewestMoreLevels = -3, kMostMoreLevels = 1;  // 4 levels: 1 .. kMostLevels
+
 constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::kConesLuminance,
                                     RadianceBasis::kConesColour};
 
@@ -75,6 +77,16 @@ void choose_resolution(const DenoiserConfig& config, Preset& preset) {
   }
 }
 
+void choose_filter(const DenoiserConfig& config, Preset& preset) {
+  if (config.kernel_radius < 0 || config.kernel_radius > 2)
+    throw InputError("kernel radius", "must be 1 or 2, or 0 for the preset's",
+                     std::to_string(config.kernel_radius));
+  if (config.kernel_radius > 0) preset.kernel_radius = config.kernel_radius;
+  if (config.more_levels < kFewestMoreLevels || config.more_levels > kMostMoreLevels)
+    throw InputError("more levels", "must be in -3..1", std::to_string(config.more_levels));
+  preset.more_levels += config.more_levels;
+}
+
 }  // namespace
 
 const std::vector<Preset>& all_presets() {
@@ -86,11 +98,14 @@ Preset find_preset(const DenoiserConfig& config) {
   Preset preset = preset_of_name(config.preset);
   choose_basis(config, preset);
   choose_resolution(config, preset);
+  choose_filter(config, preset);
   return preset;
 }
 
 void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
   recipe.visibility_filter.radius = recipe.radiance_filter.radius = preset.kernel_radius;
+  for (int* levels : {&recipe.radiance_filter.levels, &recipe.svgf_levels})
+    *levels = std::max(*levels + preset.more_levels, 1);
   if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)
     recipe.indirect_basis = preset.indirect_basis;
 }

@@ -77,11 +77,12 @@ TEST_F(Replay, WritesTheBitsOfTheCoreCalledDirectlyForOneAndTwoThreads) {
 }
 
 TEST_F(Replay, WritesItsResultAsJsonWithTheKeysOfTheFormat) {
-  ASSERT_EQ(replay({"--json", (dir / "result.json").string(), "--budget-ms", "40"}), 0) << text;
+  ASSERT_EQ(replay({"--json", (dir / "result.json").string(), "--budget-ms", "40000"}), 0) << text;
   const auto json = nlohmann::json::parse(test::file_text(dir / "result.json"));
   EXPECT_EQ(json["frames"], 4);
   EXPECT_EQ(json["recipe"], "reliable");
   EXPECT_EQ(json["preset"], "balanced");
+  EXPECT_EQ(json["presets"], (nlohmann::json{{"balanced", 4}}));
   EXPECT_EQ(json["width"], config.width);
   EXPECT_EQ(json["height"], config.height);
   EXPECT_EQ(json["bytes_in"], 4 * config.width * config.height * 4 * 9);
@@ -91,7 +92,7 @@ TEST_F(Replay, WritesItsResultAsJsonWithTheKeysOfTheFormat) {
   for (const char* time : {"core", "total"})
     for (const char* percentile : {"p50", "p95", "p99"})
       EXPECT_TRUE(json["ms"][time][percentile].is_number()) << time << percentile;
-  EXPECT_EQ(json.size(), 10u);
+  EXPECT_EQ(json.size(), 11u);
 }
 
 TEST_F(Replay, WritesOnlyTheFramesAndLayersAskedFor) {

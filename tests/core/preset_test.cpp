@@ -74,6 +74,14 @@ TEST(Preset, WhatAConfigurationChoosesReplacesThePresetsChoice) {
   EXPECT_EQ(halves(config), 2);
   config.indirect_basis = "irradiance";
   EXPECT_EQ(Plan::make(config).recipe.indirect_basis, RadianceBasis::kIrradiance);
+  const int levels = Plan::make(config).recipe.radiance_filter.levels;
+  config.kernel_radius = 1;
+  config.more_levels = -1;
+  EXPECT_EQ(Plan::make(config).recipe.radiance_filter.radius, 1);
+  EXPECT_EQ(Plan::make(config).recipe.visibility_filter.radius, 1);
+  EXPECT_EQ(Plan::make(config).recipe.radiance_filter.levels, levels - 1);
+  config.more_levels = -3;
+  EXPECT_EQ(Plan::make(config).recipe.radiance_filter.levels, 1);
 }
 
 TEST(Preset, WrongChoicesAreRefusedByName) {
@@ -89,6 +97,8 @@ TEST(Preset, WrongChoicesAreRefusedByName) {
           "irradiance, luminance-cones, cones", "'sh'");
   refuses([](DenoiserConfig& c) { c.half_resolution = {"shadow"}; }, "half resolution",
           "indirect, glossy or none", "'shadow'");
+  refuses([](DenoiserConfig& c) { c.kernel_radius = 3; }, "kernel radius", "1 or 2", "3");
+  refuses([](DenoiserConfig& c) { c.more_levels = 2; }, "more levels", "-3..1", "2");
   refuses(
       [](DenoiserConfig& c) {
         c.half_resolution = {"glossy", "glossy"};

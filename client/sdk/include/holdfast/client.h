@@ -61,8 +61,9 @@ struct SessionOptions {
   std::vector<std::string> half_resolution;  ///< of "indirect" and "glossy", or "none"; empty = the
                                              ///< preset's
   std::uint64_t seed = 0;                    ///< the same seed gives the same bits
-  bool debug_planes = false;     ///< also motion, history and confidence of each component
-  double budget_ms = 0;          ///< wished time of a frame in the core; 0 = none
+  bool debug_planes = false;  ///< also motion, history and confidence of each component
+  double budget_ms = 0;       ///< wished time of a frame in the core, for which faster presets than
+                              ///< `preset` may be used; 0 = none
   std::string wire = "exact";    ///< name of the wire profile
   std::vector<PlaneId> results;  ///< result planes to send back; empty = all
   LateFrames late_frames = LateFrames::kAll;
@@ -99,7 +100,7 @@ struct FrameOutput {
   FrameTiming timing;
   bool history_reset = false;
   double mean_history_frames = 0;  ///< over surface pixels and components
-  std::string preset;              ///< that was used
+  std::string preset;              ///< that was used; empty with an error, or if dropped
   std::vector<Repair> repaired;    ///< values that were not finite or out of range, by plane
   std::uint64_t non_finite_out = 0;
   bool history_lost = false;  ///< the server was lost: history was made anew from the last frames

@@ -1,0 +1,195 @@
+#include "client/cli/study_trade.h"
+
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
+#include <tbb/global_control.h>
+
+#include "client/cli/progress.h"
+#include "client/cli/study_sequence.h"
+#include "client/cli/trade_points.h"
+#include "client/measure/layer_meter.h"
+#include "client/sequence/sequence.h"
+#include "core/denoiser/plan.h"
+#include "core/frame/error.h"
+
+namespace holdfast::cli {
+namespace {
+
+constexpr std::size_t kWarmUp = 2;  // frames: the first has no history, the second fills buffers
+constexpr PlaneId kComposite{PlaneKind::kComposite, {}};
+
+/// Processor time of this thread, ms.
+double processor_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One plan at work: all settings that come to it share its figures.
+class Candidate {
+ public:
+  explicit Candidate(const DenoiserConfig& config) : denoiser_(config) {}
+
+  void filter(const Frame& frame, bool timed) {
+    const double start = processor_ms();
+    const FrameReport report = denoiser_.filter(frame, results_);
+    const double ms = processor_ms() - start;
+    if (!timed) return;
+    ms_.push_back(ms);
+    std::vector<measure::TradePoint::Stage> parts;
+    for (const StageTime& stage : report.stages) {
+      const std::size_t dot = stage.stage.rfind('.');
+      const std::string name = dot == std::string::npos ? "frame" : stage.stage.substr(0, dot);
+      auto part = std::find_if(parts.begin(), parts.end(),
+                               [&](const auto& other) { return other.name == name; });
+      if (part == parts.end()) part = parts.insert(parts.end(), {name, 0});
+      part->ms += stage.ms * ms / report.ms;
+    }
+    stages_.push_back(std::move(parts));
+  }
+
+  void judge(const measure::ReferenceLayer& reference) {
+    meter_.add(reference, results_.at(kComposite));
+  }
+
+  void write(measure::TradePoint& point) const {
+    const DenoiserConfig& config = denoiser_.config();
+    point.ms = median(ms_);
+    point.stages = stages_.front();
+    for (std::size_t k = 0; k < point.stages.size(); ++k) {
+      std::vector<double> values;
+      for (const auto& frame : stages_) values.push_back(frame[k].ms);
+      point.stages[k].ms = median(values);
+    }
+    point.bytes_per_pixel =
+        static_cast<double>(denoiser_.memory_bytes()) / (1.0 * config.width * config.height);
+    const measure::LayerErrors errors = meter_.image();
+    point.rmse = errors.rmse;
+    point.ssim = errors.ssim;
+  }
+
+ private:
+  Denoiser denoiser_;
+  PlaneSet results_;
+  measure::LayerMeter meter_;
+  std::vector<double> ms_;
+  std::vector<std::vector<measure::TradePoint::Stage>> stages_;
+};
+
+/// The candidates of a scene, and which of them each setting is.
+class Candidates {
+ public:
+  explicit Candidates(const std::vector<TradeSetting>& settings) {
+    std::vector<std::string> plans;
+    for (const TradeSetting& setting : settings) {
+      std::string plan = Plan::make(setting.config).text();
+      plan.erase(plan.find("preset "), plan.find('\n', plan.find("preset ")) -
+                                           plan.find("preset "));  // its name alone tells nothing
+      auto known = std::find(plans.begin(), plans.end(), plan);
+      of_setting_.push_back(static_cast<std::size_t>(known - plans.begin()));
+      if (known != plans.end()) continue;
+      plans.push_back(std::move(plan));
+      all_.push_back(std::make_unique<Candidate>(setting.config));
+    }
+  }
+  auto begin() const { return all_.begin(); }
+  auto end() const { return all_.end(); }
+  const Candidate& of_setting(std::size_t k) const { return *all_[of_setting_[k]]; }
+
+ private:
+  std::vector<std::unique_ptr<Candidate>> all_;
+  std::vector<std::size_t> of_setting_;
+};
+
+/// The composite's reference of a frame.
+measure::ReferenceLayer reference_of(const SequenceReader& sequence, const Frame& frame,
+                                     std::size_t position, measure::ReferenceTrack& track) {
+  const PlaneSet planes = sequence.read_reference(frame.index);
+  const measure::CleanImage clean = measure::clean_image(planes.at(kComposite));
+  return track.next(frame.index, position, clean.image,
+                    measure::surface_mask(frame.planes.at({PlaneKind::kDepth, {}})));
+}
+
+DenoiserConfig config_of(const SequenceReader& sequence) {
+  DenoiserConfig config;
+  config.width = sequence.header().width;
+  config.height = sequence.header().height;
+  config.lights = sequence.header().lights;
+  config.planes = sequence.planes();
+  return config;
+}
+
+measure::TradeScene try_settings(const std::string& name, const SequenceReader& sequence,
+                                 const StudyOptions& options, std::int64_t frames) {
+  std::vector<std::int64_t> indices = sequence.frame_indices();
+  if (static_cast<std::int64_t>(indices.size()) > frames)
+    indices.resize(static_cast<std::size_t>(frames));
+  const DenoiserConfig config = config_of(sequence);
+  const std::vector<TradeSetting> settings = trade_settings(config, options.recipes);
+  const Candidates candidates(settings);
+  Progress progress("trade " + name, static_cast<std::int64_t>(indices.size()), options.quiet);
+  measure::ReferenceTrack track(measure::Measure::kTonemap, false);
+  std::size_t judged = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const Frame frame = sequence.read_frame(indices[i]);
+    for (const auto& candidate : candidates) candidate->filter(frame, i >= kWarmUp);
+    if (sequence.has_reference(indices[i])) {
+      const measure::ReferenceLayer reference = reference_of(sequence, frame, i, track);
+      for (const auto& candidate : candidates) candidate->judge(reference);
+      ++judged;
+    }
+    progress.update(static_cast<std::int64_t>(i) + 1);
+  }
+  measure::TradeScene scene{name,
+                            std::to_string(indices.size()) + " frames of " +
+                                std::to_string(config.width) + "x" + std::to_string(config.height) +
+                                ", " + std::to_string(judged) + " of them with references",
+                            config.width,
+                            config.height,
+                            {}};
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    candidates.of_setting(k).write(scene.points.emplace_back(settings[k].point));
+  return scene;
+}
+
+/// Enough frames to time and to judge.
+void check_frames(const std::string& name, const SequenceReader& sequence, std::int64_t frames) {
+  const std::vector<std::int64_t> indices = sequence.frame_indices();
+  const auto count = std::min(indices.size(), static_cast<std::size_t>(frames));
+  if (count <= kWarmUp)
+    throw InputError("frames of " + name, "must be at least 3", std::to_string(count));
+  if (std::none_of(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(count),
+                   [&](std::int64_t index) { return sequence.has_reference(index); }))
+    throw InputError("frames of " + name, "must have a reference among them", "none");
+}
+
+}  // namespace
+
+std::vector<measure::TradeScene> study_trade(const StudyOptions& options, std::int64_t frames,
+                                             std::vector<StudyStep>& steps) {
+  for (const std::string& recipe : options.recipes) find_recipe(recipe);
+  std::vector<measure::TradeScene> scenes;
+  for (RenderOptions render : options.scenes) {
+    const std::string name = scene_folder(render.scene);
+    render.out = options.out / name / "sequence";
+    render.quiet = options.quiet;
+    timed(steps, "render " + name, [&] { provide_sequence(render, options.reuse); });
+    const SequenceReader sequence(render.out);
+    check_frames(name, sequence, frames);
+    timed(steps, "trade " + name, [&] {
+      const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+      scenes.push_back(try_settings(name, sequence, options, frames));
+    });
+  }
+  return scenes;
+}
+
+}  // namespace holdfast::cli

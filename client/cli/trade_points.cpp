@@ -1,0 +1,94 @@
+#include "client/cli/trade_points.h"
+
+#include <algorithm>
+
+#include "core/denoiser/preset.h"
+#include "core/denoiser/recipe.h"
+
+namespace holdfast::cli {
+namespace {
+
+constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::kConesLuminance,
+                                    RadianceBasis::kConesColour};
+
+TradeSetting setting_of(const DenoiserConfig& scene, const std::string& recipe,
+                        const Preset& parts) {
+  TradeSetting setting;
+  setting.point.recipe = recipe;
+  setting.point.kernel_radius = parts.kernel_radius;
+  setting.point.more_levels = parts.more_levels;
+  setting.point.basis = basis_name(parts.indirect_basis);
+  setting.point.half_indirect = parts.half_indirect;
+  setting.point.half_glossy = parts.half_glossy;
+  setting.config = scene;
+  setting.config.recipe = recipe;
+  return setting;
+}
+
+/// Without the name of a preset.
+TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe,
+                          const Preset& parts) {
+  TradeSetting setting = setting_of(scene, recipe, parts);
+  DenoiserConfig& config = setting.config;
+  config.preset = "balanced";
+  config.kernel_radius = parts.kernel_radius;
+  config.more_levels = parts.more_levels - find_preset(scene).more_levels;
+  config.indirect_basis = basis_name(parts.indirect_basis);
+  if (parts.half_indirect) config.half_resolution.push_back("indirect");
+  if (parts.half_glossy) config.half_resolution.push_back("glossy");
+  if (config.half_resolution.empty()) config.half_resolution.push_back("none");
+  return setting;
+}
+
+bool same_parts(const measure::TradePoint& a, const measure::TradePoint& b) {
+  return a.recipe == b.recipe && a.kernel_radius == b.kernel_radius &&
+         a.more_levels == b.more_levels && a.basis == b.basis &&
+         a.half_indirect == b.half_indirect && a.half_glossy == b.half_glossy;
+}
+
+void add_once(std::vector<TradeSetting>& settings, TradeSetting setting) {
+  if (std::none_of(settings.begin(), settings.end(), [&](const TradeSetting& other) {
+        return same_parts(other.point, setting.point);
+      }))
+    settings.push_back(std::move(setting));
+}
+
+void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
+               std::vector<TradeSetting>& settings) {
+  for (const int radius : {1, 2})
+    for (const RadianceBasis basis : kBases)
+      for (const bool half_indirect : {true, false})
+        for (const bool half_glossy : {true, false})
+          add_once(settings, free_setting(scene, recipe,
+                                          {.name = {},
+                                           .kernel_radius = radius,
+                                           .indirect_basis = basis,
+                                           .half_indirect = half_indirect,
+                                           .half_glossy = half_glossy}));
+  for (Preset parts : all_presets())
+    for (const int more : {-1, 1}) {
+      Preset other = parts;
+      other.more_levels += more;
+      add_once(settings, free_setting(scene, recipe, other));
+    }
+}
+
+}  // namespace
+
+std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
+                                         const std::vector<std::string>& recipes) {
+  std::vector<TradeSetting> settings;
+  for (const std::string& recipe : recipes) {
+    find_recipe(recipe);
+    for (const Preset& preset : all_presets()) {
+      TradeSetting setting = setting_of(scene, recipe, preset);
+      setting.point.presets = {preset.name};
+      setting.config.preset = preset.name;
+      settings.push_back(std::move(setting));
+    }
+    if (recipe == recipes.front()) add_sweep(scene, recipe, settings);
+  }
+  return settings;
+}
+
+}  // namespace holdfast::cli

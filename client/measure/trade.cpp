@@ -1,0 +1,98 @@
+#include "client/measure/trade.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace holdfast::measure {
+namespace {
+
+bool has_preset(const TradePoint& point, const char* preset) {
+  return std::find(point.presets.begin(), point.presets.end(), preset) != point.presets.end();
+}
+
+const TradePoint* balanced(const TradeScene& scene) {
+  for (const TradePoint& point : scene.points)
+    if (point.recipe == "reliable" && has_preset(point, "balanced")) return &point;
+  return nullptr;
+}
+
+const TradePoint* same_setting(const TradeScene& scene, const TradePoint& point) {
+  for (const TradePoint& other : scene.points)
+    if (other.recipe == point.recipe && other.kernel_radius == point.kernel_radius &&
+        other.more_levels == point.more_levels && other.basis == point.basis &&
+        other.half_indirect == point.half_indirect && other.half_glossy == point.half_glossy)
+      return &other;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string point_name(const TradePoint& point) {
+  std::string name = point.recipe;
+  for (const std::string& preset : point.presets)
+    name += (&preset == &point.presets.front() ? " " : ", ") + preset;
+  if (!point.presets.empty()) return name;
+  name += point.kernel_radius == 1 ? " 3x3" : " 5x5";
+  if (point.more_levels != 0)
+    name += (point.more_levels > 0 ? " +" : " ") + std::to_string(point.more_levels) + " levels";
+  if (!point.basis.empty()) name += " " + point.basis;
+  if (point.half_indirect && point.half_glossy) return name + " half";
+  return name + (point.half_indirect ? " half indirect" : point.half_glossy ? " half glossy" : "");
+}
+
+std::vector<std::size_t> pareto_front(const std::vector<TradePoint>& points,
+                                      const std::string& recipe) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (points[k].recipe == recipe) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return points[a].ms != points[b].ms ? points[a].ms < points[b].ms
+                                        : points[a].rmse < points[b].rmse;
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t k : order)
+    if (front.empty() || points[k].rmse < points[front.back()].rmse) front.push_back(k);
+  return front;
+}
+
+double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t point) {
+  double best = points[point].rmse;
+  for (const TradePoint& other : points)
+    if (other.recipe == points[point].recipe && other.ms <= points[point].ms)
+      best = std::min(best, other.rmse);
+  return points[point].rmse > 0 ? 1 - best / points[point].rmse : 0;
+}
+
+TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
+  TradeScene all{"all scenes", "Geometric means over", 0, 0, {}};
+  if (scenes.empty()) return all;
+  for (const TradeScene& scene : scenes) {
+    all.caption += (&scene == &scenes.front() ? " " : ", ") + scene.name;
+    if (balanced(scene) == nullptr) return all;
+  }
+  const auto count = static_cast<double>(scenes.size());
+  for (const TradePoint& point : scenes.front().points) {
+    TradePoint mean = point;
+    mean.stages.clear();
+    double time = 0, error = 0, bytes = 0, ssim = 0;
+    bool everywhere = true;
+    for (const TradeScene& scene : scenes) {
+      const TradePoint* own = same_setting(scene, point);
+      everywhere &= own != nullptr;
+      if (own == nullptr) continue;
+      time += std::log(own->ms / balanced(scene)->ms);
+      error += std::log(own->rmse / balanced(scene)->rmse);
+      bytes += std::log(own->bytes_per_pixel);
+      ssim += own->ssim;
+    }
+    if (!everywhere) continue;
+    mean.ms = std::exp(time / count);
+    mean.rmse = std::exp(error / count);
+    mean.bytes_per_pixel = std::exp(bytes / count);
+    mean.ssim = ssim / count;
+    all.points.push_back(mean);
+  }
+  return all;
+}
+
+}  // namespace holdfast::measure

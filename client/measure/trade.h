@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace holdfast::measure {
+
+/// One setting of the denoiser on one scene: what it costs and what it leaves wrong.
+struct TradePoint {
+  std::string recipe;
+  std::vector<std::string> presets;  ///< that give this setting; empty = none
+  int kernel_radius = 2;             ///< 1 or 2
+  int more_levels = 0;               ///< beside those of the recipe
+  std::string basis;                 ///< of indirect light, as DenoiserConfig names it; the
+                                     ///< preset's is that of recipes that keep cones
+  bool half_indirect = false, half_glossy = false;
+  double ms = 0;  ///< processor time of a frame in the core, one thread; median over frames
+  struct Stage {
+    std::string name;  ///< "frame", or a component's
+    double ms = 0;     ///< its share of `ms`
+  };
+  std::vector<Stage> stages;
+  double bytes_per_pixel = 0;  ///< held for history and scratch
+  double rmse = 0, ssim = 0;   ///< of the composite over the image
+};
+
+/// A scene with everything that was tried on it.
+struct TradeScene {
+  std::string name, caption;
+  int width = 0, height = 0;  ///< pixels
+  std::vector<TradePoint> points;
+};
+
+/// "reliable fast" of a preset, else what is chosen: "reliable 3x3 irradiance half indirect".
+std::string point_name(const TradePoint& point);
+
+/// Indices of the points of a recipe that no other of them beats in both time and RMSE, fastest
+/// first. Of points that are equal in both the first is listed.
+std::vector<std::size_t> pareto_front(const std::vector<TradePoint>& points,
+                                      const std::string& recipe);
+
+/// How much of a point's RMSE is saved by another of its recipe that takes no longer: 0 on the
+/// front, 0.1 where another has 10 % less.
+double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t point);
+
+/// All scenes as one: of each setting that every scene has, the geometric means of time, RMSE and
+/// bytes and the mean of SSIM; time and RMSE are over those of "reliable balanced" on each scene.
+/// No points if that one is missing.
+TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes);
+
+}  // namespace holdfast::measure

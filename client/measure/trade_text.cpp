@@ -1,0 +1,154 @@
+#include "client/measure/trade_text.h"
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "client/measure/comparison_text.h"
+#include "client/measure/report_assets.h"
+#include "client/measure/report_plot.h"
+#include "client/measure/trade_plot.h"
+
+namespace holdfast::measure {
+namespace {
+
+bool on_front(const TradeScene& scene, std::size_t k) {
+  const auto front = pareto_front(scene.points, scene.points[k].recipe);
+  return std::find(front.begin(), front.end(), k) != front.end();
+}
+
+nlohmann::ordered_json scene_json(const TradeScene& scene) {
+  nlohmann::ordered_json json = {{"caption", scene.caption},
+                                 {"width", scene.width},
+                                 {"height", scene.height},
+                                 {"points", nlohmann::ordered_json::array()}};
+  for (std::size_t k = 0; k < scene.points.size(); ++k) {
+    const TradePoint& point = scene.points[k];
+    nlohmann::ordered_json half = nlohmann::ordered_json::array();
+    if (point.half_indirect) half.push_back("indirect");
+    if (point.half_glossy) half.push_back("glossy");
+    nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+    for (const TradePoint::Stage& stage : point.stages) stages[stage.name] = stage.ms;
+    json["points"].push_back({{"name", point_name(point)},
+                              {"recipe", point.recipe},
+                              {"presets", point.presets},
+                              {"kernel_radius", point.kernel_radius},
+                              {"more_levels", point.more_levels},
+                              {"indirect_basis", point.basis},
+                              {"half_resolution", half},
+                              {"ms", point.ms},
+                              {"stages", stages},
+                              {"bytes_per_pixel", point.bytes_per_pixel},
+                              {"rmse", point.rmse},
+                              {"ssim", point.ssim},
+                              {"front", on_front(scene, k)},
+                              {"rmse_behind_front", rmse_behind_front(scene.points, k)}});
+  }
+  return json;
+}
+
+/// Cells of the table's rows: named settings and the front's others, fastest first.
+std::vector<std::vector<std::string>> rows_of(const TradeScene& scene, bool relative) {
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < scene.points.size(); ++k)
+    if (!scene.points[k].presets.empty() || on_front(scene, k)) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scene.points[a].ms < scene.points[b].ms;
+  });
+  std::vector<std::vector<std::string>> rows{
+      {"setting", relative ? "time" : "ms", "B/pixel", "RMSE", "SSIM", "RMSE behind the front"}};
+  for (const std::size_t k : order) {
+    const TradePoint& point = scene.points[k];
+    rows.push_back({point_name(point), number_text(point.ms, relative ? 3 : 1),
+                    number_text(point.bytes_per_pixel, 0),
+                    number_text(point.rmse, relative ? 3 : 4), number_text(point.ssim, 4),
+                    on_front(scene, k)
+                        ? "on it"
+                        : number_text(100 * rmse_behind_front(scene.points, k), 1) + " %"});
+  }
+  return rows;
+}
+
+std::string scene_markdown(const TradeScene& scene, bool relative) {
+  std::string text = "**" + scene.name + "**: " + scene.caption + "\n\n";
+  const auto rows = rows_of(scene, relative);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += "|";
+    for (const std::string& cell : rows[r]) text += " " + cell + " |";
+    text += "\n";
+    if (r > 0) continue;
+    text += "|---|";
+    for (std::size_t c = 1; c < rows[r].size(); ++c) text += "---:|";
+    text += "\n";
+  }
+  return text + "\n";
+}
+
+std::string scene_html(const TradeScene& scene, bool relative) {
+  std::string html = "<section><h2>" + escaped(scene.name) + "</h2><p>" + escaped(scene.caption) +
+                     ".</p><figure>" + trade_panels_svg(scene, relative) +
+                     "</figure><div class=\"wide\"><table>";
+  const auto rows = rows_of(scene, relative);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    html += "<tr>";
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      const char* tag = r == 0 || c == 0 ? "th" : "td";
+      html += std::string("<") + tag + ">" + escaped(rows[r][c]) + "</" + tag + ">";
+    }
+    html += "</tr>";
+  }
+  return html + "</table></div></section>";
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file);
+  stream << text;
+  if (!stream.flush()) throw std::runtime_error("cannot write " + file.string());
+}
+
+/// The scenes, after all of them as one if there are several.
+template <class Write>
+std::string each(const std::vector<TradeScene>& scenes, const Write& text_of) {
+  std::string text;
+  if (scenes.size() > 1) {
+    const TradeScene all = trade_over_scenes(scenes);
+    if (!all.points.empty()) text += text_of(all, true);
+  }
+  for (const TradeScene& scene : scenes) text += text_of(scene, false);
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json trade_json(const std::vector<TradeScene>& scenes) {
+  nlohmann::ordered_json json;
+  for (const TradeScene& scene : scenes) json["scenes"][scene.name] = scene_json(scene);
+  json["all"] = scene_json(trade_over_scenes(scenes));
+  return json;
+}
+
+std::string trade_markdown(const std::vector<TradeScene>& scenes) {
+  return each(scenes, scene_markdown);
+}
+
+void write_trade_report(const std::filesystem::path& file, const std::vector<TradeScene>& scenes) {
+  write(file,
+        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+        "content=\"width=device-width,initial-scale=1\"><title>Holdfast: speed and accuracy"
+        "</title><style>" +
+            std::string(kReportStyle) +
+            "</style></head><body><main><h1>Holdfast: speed and accuracy</h1><p>Each point is one "
+            "setting: its processor time and the RMSE of the composite. The dashed line is the "
+            "front: what no other setting beats in both.</p>" +
+            each(scenes, scene_html) + "</main></body></html>\n");
+}
+
+void write_trade_svg(const std::filesystem::path& file, const std::vector<TradeScene>& scenes) {
+  const TradeScene all =
+      scenes.size() > 1 ? trade_over_scenes(scenes) : TradeScene{{}, {}, 0, 0, {}};
+  write(file, (all.points.empty() ? trade_panels_svg(scenes.front(), false)
+                                  : trade_panels_svg(all, true)) +
+                  "\n");
+}
+
+}  // namespace holdfast::measure

@@ -1,0 +1,112 @@
+#include "core/denoiser/switch_plan.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/spatial/upsample.h"
+
+namespace holdfast {
+namespace {
+
+/// Of a component whose resolution is to change: from half to full.
+void upsample_history(const ComponentHistory& half, const Guides& half_guides,
+                      const Guides& full_guides, ComponentHistory& full) {
+  const Channels<float> nothing(full.data.width(), full.data.height(), 1);
+  const int count = half.data.count();
+  for (int first = 0; first < count;) {
+    Upsample pass;
+    pass.full = &full_guides;
+    pass.half = &half_guides;
+    pass.channels = count - first >= 3 ? 3 : 1;
+    for (int c = 0; c < pass.channels; ++c) {
+      pass.in[c] = half.data[first + c];
+      pass.beyond[c] = nothing[0];
+      pass.out[c] = full.data[first + c];
+    }
+    upsample(pass);
+    first += pass.channels;
+  }
+}
+
+/// Whether the half-size frame would hold other buffers.
+bool halves_differ(const Plan& a, const Plan& b) {
+  return !std::equal(a.components.begin(), a.components.end(), b.components.begin(),
+                     [](const Plan::Entry& x, const Plan::Entry& y) {
+                       return x.half == y.half && (!x.half || x.cones == y.cones);
+                     });
+}
+
+bool cones_differ(const Plan& a, const Plan& b, std::size_t k) {
+  return a.components[k].cones != b.components[k].cones ||
+         (b.components[k].cones && a.recipe.indirect_basis != b.recipe.indirect_basis);
+}
+
+/// A filter of `next` at another resolution than before, with what the old one kept.
+ComponentFilter at_other_resolution(const DenoiserConfig& config, const Plan& next, std::size_t k,
+                                    const Guides* last, const HalfFrame& next_half,
+                                    const PlannedParts& parts) {
+  const Plan::Entry& entry = next.components[k];
+  const Recipe recipe = next.recipe_of(entry);
+  const ComponentHistory& before = parts.filters[k].history();
+  if (entry.half) {
+    ComponentFilter filter(entry, recipe, half_size(config.width), half_size(config.height));
+    if (last != nullptr)
+      halve_signal(before.data, before.data.count(), next_half.grid(), filter.history().data);
+    return filter;
+  }
+  ComponentFilter filter(entry, recipe, config.width, config.height);
+  if (last != nullptr) upsample_history(before, parts.half.guides(), *last, filter.history());
+  return filter;
+}
+
+/// What takes the place of a component's filter, or of its cones alone.
+struct Replacement {
+  Recipe recipe;
+  std::optional<ComponentFilter> filter;
+  std::optional<ConeHistory> cones;
+};
+
+}  // namespace
+
+void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
+                 const PlannedParts& parts) {
+  const Plan& plan = parts.plan;
+  const bool other_half = halves_differ(plan, next);
+  HalfFrame half;
+  if (other_half && next.half.any) {
+    half = HalfFrame(config, next);
+    if (last != nullptr) half.remember(*last);
+  }
+  SurfaceHistory surface;
+  const bool needs_surface = next.history && next.full.any;
+  if (needs_surface && !parts.surface.taps) surface = SurfaceHistory(config.width, config.height);
+  std::vector<Replacement> replaced(next.components.size());
+  for (std::size_t k = 0; k < replaced.size(); ++k) {
+    const Plan::Entry& entry = next.components[k];
+    const int width = entry.half ? half_size(config.width) : config.width;
+    const int height = entry.half ? half_size(config.height) : config.height;
+    replaced[k].recipe = next.recipe_of(entry);
+    if (entry.half != plan.components[k].half)
+      replaced[k].filter = at_other_resolution(config, next, k, last, half, parts);
+    else if (cones_differ(plan, next, k))
+      replaced[k].cones =
+          entry.cones ? ConeHistory(width, height, next.recipe.indirect_basis) : ConeHistory();
+  }
+  parts.scratch.grow(config.width, config.height, next, next.full, config.debug_planes);
+
+  // Nothing has changed so far but for more scratch, and nothing below can fail.
+  for (std::size_t k = 0; k < replaced.size(); ++k) {
+    Replacement& other = replaced[k];
+    if (other.filter)
+      parts.filters[k] = std::move(*other.filter);
+    else
+      parts.filters[k].change(std::move(other.recipe), other.cones ? &*other.cones : nullptr);
+  }
+  if (other_half) parts.half = std::move(half);
+  if (!needs_surface || surface.taps) parts.surface = std::move(surface);
+  parts.scratch.trim(next.full);
+  parts.plan = std::move(next);
+}
+
+}  // namespace holdfast

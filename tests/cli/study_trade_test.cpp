@@ -1,0 +1,59 @@
+#include <filesystem>
+#include <set>
+
+#include "tests/cli/program_test.h"
+
+namespace holdfast {
+namespace {
+
+using test::keys;
+using Names = std::vector<std::string>;
+
+class TradeStudy : public test::ProgramTest {
+ protected:
+  int study(Names more = {}) {
+    more.insert(more.begin(), {"study", "--trade", "--size", "48x27", "--frames", "4",
+                               "--reference-spp", "4", "--quiet"});
+    return holdfast(more);
+  }
+};
+
+TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
+  ASSERT_EQ(
+      study({"-o", path("study"), "--scenes", "fence", "--recipes", "reliable,clamp", "--json",
+             path("study.json"), "--markdown", path("table.md"), "--svg", path("plot.svg")}),
+      0)
+      << text;
+  const auto json = nlohmann::json::parse(test::file_text(dir / "study.json"));
+  EXPECT_EQ(keys(json), (Names{"all", "scenes", "seconds"}));
+  const auto& scene = json["scenes"]["fence"];
+  EXPECT_EQ(keys(scene), (Names{"caption", "height", "points", "width"}));
+  std::set<std::string> names;
+  for (const auto& point : scene["points"]) {
+    EXPECT_EQ(keys(point), (Names{"bytes_per_pixel", "front", "half_resolution", "indirect_basis",
+                                  "kernel_radius", "more_levels", "ms", "name", "presets", "recipe",
+                                  "rmse", "rmse_behind_front", "ssim", "stages"}));
+    EXPECT_GT(point["ms"], 0.0);
+    EXPECT_GT(point["rmse"], 0.0);
+    EXPECT_GT(point["bytes_per_pixel"], 0.0);
+    EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
+  }
+  for (const char* name : {"reliable fast", "reliable balanced", "reliable accurate", "clamp fast",
+                           "reliable 3x3 cones half"})
+    EXPECT_TRUE(names.contains(name)) << name;
+  EXPECT_NE(test::file_text(dir / "table.md").find("| reliable fast |"), std::string::npos);
+  EXPECT_EQ(test::file_text(dir / "plot.svg").rfind("<svg ", 0), 0u);
+  EXPECT_NE(test::file_text(dir / "study/trade.html").find("<svg "), std::string::npos);
+}
+
+TEST_F(TradeStudy, RefusesWhatMeansNothing) {
+  EXPECT_EQ(study({"--scenes", "fence"}), 2) << "no folder";
+  EXPECT_EQ(study({"-o", path("study"), "--scenes", "fence", "--recipes", "nothing"}), 2);
+  EXPECT_EQ(holdfast({"study", "--vectors", "--svg", path("plot.svg")}), 2);
+  EXPECT_EQ(study({"-o", path("study"), "--scenes", "fence", "--frames", "2"}), 2)
+      << "two frames are warm-up";
+  EXPECT_NE(text.find("at least 3"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,134 @@
+#include "client/measure/trade.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "client/measure/trade_plot.h"
+#include "client/measure/trade_text.h"
+
+namespace holdfast::measure {
+namespace {
+
+TradePoint point(const std::string& recipe, double ms, double rmse,
+                 std::vector<std::string> presets = {}) {
+  TradePoint out;
+  out.recipe = recipe;
+  out.presets = std::move(presets);
+  out.ms = ms;
+  out.rmse = rmse;
+  out.bytes_per_pixel = 100;
+  out.ssim = 0.9;
+  out.basis = "cones";
+  return out;
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(ParetoFront, IsWhatNoOtherPointOfTheRecipeBeatsInBoth) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> value(1, 12);  // coarse, so that ties occur
+  for (int round = 0; round < 200; ++round) {
+    std::vector<TradePoint> points;
+    for (int i = 0; i < 15; ++i)
+      points.push_back(point(i % 3 == 0 ? "b" : "a", value(random), value(random)));
+    const auto front = pareto_front(points, "a");
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (points[k].recipe != "a") continue;
+      const bool beaten = std::any_of(points.begin(), points.end(), [&](const TradePoint& other) {
+        return other.recipe == "a" && other.ms <= points[k].ms && other.rmse <= points[k].rmse &&
+               (other.ms < points[k].ms || other.rmse < points[k].rmse);
+      });
+      const bool listed = std::any_of(front.begin(), front.end(), [&](std::size_t f) {
+        return points[f].ms == points[k].ms && points[f].rmse == points[k].rmse;
+      });
+      EXPECT_EQ(listed, !beaten) << points[k].ms << ' ' << points[k].rmse;
+      EXPECT_EQ(rmse_behind_front(points, k) > 0,
+                std::any_of(points.begin(), points.end(), [&](const TradePoint& other) {
+                  return other.recipe == "a" && other.ms <= points[k].ms &&
+                         other.rmse < points[k].rmse;
+                }));
+    }
+    for (std::size_t i = 1; i < front.size(); ++i) {
+      EXPECT_LT(points[front[i - 1]].ms, points[front[i]].ms);
+      EXPECT_GT(points[front[i - 1]].rmse, points[front[i]].rmse);
+    }
+  }
+}
+
+TEST(Trade, RmseBehindTheFrontIsTheShareThatAnotherSettingSaves) {
+  const std::vector<TradePoint> points{point("a", 1, 0.5), point("a", 2, 0.4), point("a", 3, 0.5),
+                                       point("b", 1, 0.1)};
+  EXPECT_EQ(rmse_behind_front(points, 0), 0);
+  EXPECT_EQ(rmse_behind_front(points, 1), 0);
+  EXPECT_DOUBLE_EQ(rmse_behind_front(points, 2), 0.2);
+}
+
+TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
+  const TradeScene one{"one", "", 8, 8, {point("reliable", 10, 0.1, {"balanced"})}};
+  TradeScene two{"two", "", 8, 8, {point("reliable", 2, 0.01, {"balanced"})}};
+  TradeScene three = one;
+  TradePoint half = point("reliable", 5, 0.2, {"fast"});
+  half.half_glossy = true;
+  three.points.push_back(half);
+  half.ms = 4;
+  half.rmse = 0.02;
+  two.points.push_back(half);
+  const TradeScene all = trade_over_scenes({three, two});
+  ASSERT_EQ(all.points.size(), 2u);
+  EXPECT_DOUBLE_EQ(all.points[0].ms, 1);
+  EXPECT_DOUBLE_EQ(all.points[0].rmse, 1);
+  EXPECT_DOUBLE_EQ(all.points[1].ms, 1) << "half and twice the time";
+  EXPECT_DOUBLE_EQ(all.points[1].rmse, 2);
+  EXPECT_EQ(trade_over_scenes({one, two}).points.size(), 1u) << "one scene lacks the other setting";
+  EXPECT_TRUE(trade_over_scenes({TradeScene{"x", "", 8, 8, {half}}}).points.empty());
+}
+
+TEST(Trade, NamesAreThoseOfPresetsElseOfWhatIsChosen) {
+  TradePoint p = point("reliable", 1, 1, {"fast"});
+  EXPECT_EQ(point_name(p), "reliable fast");
+  p.presets.clear();
+  p.kernel_radius = 1;
+  p.more_levels = -1;
+  p.half_indirect = true;
+  EXPECT_EQ(point_name(p), "reliable 3x3 -1 levels cones half indirect");
+  p.half_glossy = true;
+  p.more_levels = 1;
+  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half");
+}
+
+TEST(TradePlot, HasAPointForEachSettingAndANameForEachPreset) {
+  TradeScene scene{"a <scene>", "", 8, 8, {}};
+  scene.points = {point("reliable", 10, 0.1, {"fast"}), point("reliable", 20, 0.05, {"balanced"}),
+                  point("reliable", 20, 0.05, {"accurate"}), point("reliable", 15, 0.2),
+                  point("svgf", 30, 0.3, {"fast"})};
+  const std::string svg = trade_svg(scene, false);
+  EXPECT_EQ(count_of(svg, "<circle"), 5u);
+  EXPECT_EQ(count_of(svg, ">reliable fast</text>"), 1u);
+  EXPECT_EQ(count_of(svg, ">reliable balanced, accurate</text>"), 1u);
+  EXPECT_EQ(count_of(svg, ">svgf fast</text>"), 1u);
+  EXPECT_NE(svg.find("a &lt;scene&gt;"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_EQ(count_of(trade_panels_svg(scene, true), "<circle"), 5u + 4u);
+  EXPECT_EQ(trade_svg({}, false), "");
+}
+
+TEST(TradePlot, DrawsASinglePointWithoutDividingByNothing) {
+  const TradeScene scene{"one", "", 8, 8, {point("reliable", 10, 0.0, {"fast"})}};
+  const std::string svg = trade_svg(scene, true);
+  EXPECT_EQ(count_of(svg, "<circle"), 1u);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace holdfast::measure

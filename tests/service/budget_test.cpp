@@ -1,0 +1,81 @@
+#include <algorithm>
+
+#include "server/calibration.h"
+#include "server/session_table.h"
+#include "tests/service/served.h"
+
+namespace holdfast {
+namespace {
+
+using test::server_config;
+using test::small_config;
+using test::small_frame;
+
+/// The session's answers under a budget, one frame after the other.
+std::vector<client::FrameOutput> answers(const server::Server& server, const DenoiserConfig& config,
+                                         double budget_ms, int frames) {
+  client::SessionOptions options = test::session_options(server, config);
+  options.budget_ms = budget_ms;
+  client::Session session(options);
+  std::vector<client::FrameOutput> outputs;
+  for (int index = 0; index < frames; ++index) {
+    session.submit(std::make_shared<const Frame>(small_frame(config, index)));
+    outputs.push_back(*session.receive());
+    EXPECT_FALSE(outputs.back().error) << outputs.back().error->message;
+  }
+  session.close();
+  return outputs;
+}
+
+TEST(Budget, ATinyOneGivesTheFastestPresetAndALargeOneThePresetAskedFor) {
+  const server::Server server(server_config(1));
+  for (const std::string& asked : kernel_preset_names()) {
+    DenoiserConfig config = small_config();
+    config.preset = asked;
+    for (const client::FrameOutput& output : answers(server, config, 1e-6, 5))
+      EXPECT_EQ(output.preset, "fast") << "asked for " << asked;
+    for (const client::FrameOutput& output : answers(server, config, 1e6, 5))
+      EXPECT_EQ(output.preset, asked);
+  }
+}
+
+TEST(Budget, TheFastestPresetGivesTheBitsOfTheCoreWithThatPreset) {
+  const server::Server server(server_config(2));
+  DenoiserConfig config = small_config();
+  const auto outputs = answers(server, config, 1e-6, 4);
+  config.preset = "fast";
+  Denoiser denoiser(config);
+  for (int index = 0; index < 4; ++index) {
+    PlaneSet results;
+    denoiser.filter(small_frame(config, index), results);
+    EXPECT_TRUE(test::same_bits(results, outputs[static_cast<std::size_t>(index)].planes)) << index;
+  }
+}
+
+TEST(Budget, CalibrationFindsTheFastestPresetTheCheapest) {
+  const server::CostTable table = server::calibrate();
+  ASSERT_EQ(table.size(), kernel_preset_names().size());
+  for (const server::PresetCost& cost : table)
+    for (const double part : {cost.frame, cost.visibility, cost.glossy, cost.indirect})
+      EXPECT_GT(part, 0);
+  EXPECT_LT(table[0].glossy + table[0].indirect, table[1].glossy + table[1].indirect);
+  EXPECT_LT(table[0].visibility, table[1].visibility);
+}
+
+// A session is accounted for with the preset that it asks for: those it may fall back to need less.
+TEST(Budget, FasterPresetsNeedNoMoreMemory) {
+  DenoiserConfig config = small_config(320, 180);
+  for (const PlaneKind kind :
+       {PlaneKind::kRoughness, PlaneKind::kAlbedo, PlaneKind::kGlossy, PlaneKind::kGlossyDirection,
+        PlaneKind::kGlossyHitDistance, PlaneKind::kIndirect, PlaneKind::kIndirectDirection})
+    config.planes.push_back({kind, {}});
+  std::vector<std::size_t> bytes;
+  for (const std::string& preset : kernel_preset_names()) {
+    config.preset = preset;
+    bytes.push_back(Denoiser(config).memory_bytes());
+  }
+  EXPECT_TRUE(std::is_sorted(bytes.begin(), bytes.end()));
+}
+
+}  // namespace
+}  // namespace holdfast
