@@ -22,6 +22,7 @@ struct LoadOptions {
   double seconds = 10;  ///< for which frames are sent; the answers of all are waited for
   std::string recipe = "reliable";
   std::string preset = "balanced";
+  std::string wire = "exact";
 };
 
 /// Where the time of the answered frames went, milliseconds, one value a frame.

@@ -22,6 +22,7 @@ client::SessionOptions session_options(const LoadOptions& options, const std::st
   out.planes = config.planes;
   out.recipe = options.recipe;
   out.preset = options.preset;
+  out.wire = options.wire;
   out.rewarm_frames = 0;  // frames are used again as soon as they are answered
   return out;
 }

@@ -9,6 +9,7 @@
 #include "client/cli/study_stability.h"
 #include "client/cli/study_text.h"
 #include "client/cli/study_vectors.h"
+#include "client/cli/study_wire.h"
 #include "client/measure/claims_text.h"
 #include "client/measure/markdown.h"
 #include "core/denoiser/denoiser.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string size, json, markdown;
   bool with_quality = false, with_vectors = false, with_stability = false, quick = false;
   bool with_long = false, with_large = false;
+  WireStudyOptions wire;
 };
 
 /// Writes the tables to the file of --markdown, or prints them.
@@ -60,6 +62,13 @@ void run_stability(const Arguments& arguments) {
                                            .json = arguments.json},
                                           passed));
   if (!passed) throw std::runtime_error("an error is beyond its limit");
+}
+
+void run_wire(Arguments& arguments) {
+  arguments.wire.quiet = arguments.study.quiet;
+  const auto figures = study_wire(arguments.wire);
+  if (!arguments.json.empty()) write_json_file(arguments.json, wire_json(figures));
+  write_tables(arguments, wire_markdown(figures));
 }
 
 void run_quality(Arguments& arguments) {
@@ -132,7 +141,8 @@ void add_study(CLI::App& app) {
   StudyOptions& study = arguments->study;
   study.recipes = recipe_names();
   CLI::App& command = *app.add_subcommand(
-      "study", "Measure recipes, motion vectors or stability: figures, claims, tables, pictures");
+      "study",
+      "Measure recipes, motion vectors, stability or wire profiles: figures, claims, pictures");
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");
@@ -142,6 +152,10 @@ void add_study(CLI::App& app) {
   CLI::Option* with_stability = subject.add_flag(
       "--stability", arguments->with_stability,
       "The table of extremes: what is sent, what is expected, how far results are from it");
+  subject
+      .add_option("--wire", arguments->wire.sequences,
+                  "Wire profiles on these sequences: bytes, times and errors of each")
+      ->delimiter(',');
   command.add_option("-o,--output", study.out,
                      "Folder of everything that is made; of the pictures of --vectors");
   add_quality_options(command, with_vectors, with_stability, quality, study);
@@ -162,6 +176,8 @@ void add_study(CLI::App& app) {
       run_vectors(*arguments);
     else if (arguments->with_stability)
       run_stability(*arguments);
+    else if (!arguments->wire.sequences.empty())
+      run_wire(*arguments);
     else
       run_quality(*arguments);
   });

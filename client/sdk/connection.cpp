@@ -6,6 +6,7 @@ Connection::Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Confi
                        const v1::Hello& hello)
     : exchange_(exchange),
       config_(std::move(config)),
+      writer_{config_.wire, {}},
       assembler_(config_.results, config_.width, config_.height) {
   const std::lock_guard lock(mutex_);  // reactions see a finished object, and wait for it here
   stub.async()->Denoise(&context_, this);
@@ -110,7 +111,7 @@ void Connection::write_on() {
     sender_.reset();
     std::optional<OutgoingFrame> frame = exchange_.next();
     if (!frame) break;
-    sender_.emplace(std::move(*frame), config_.planes);
+    sender_.emplace(std::move(*frame), config_.planes, writer_);
   }
   if (!exchange_.all_sent()) return;
   writes_done_ = true;

@@ -26,6 +26,7 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   struct Config {
     std::vector<PlaneId> planes, results;
     int width = 0, height = 0;
+    const wire::WireProfile* wire = &wire::exact_profile();
     bool fresh = false;  ///< the session was made for this stream
   };
 
@@ -58,6 +59,7 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   grpc::ClientContext context_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
+  PlaneWriter writer_;  ///< of the sender
   std::optional<FrameSender> sender_;
   ResultAssembler assembler_;
   v1::DenoiseRequest request_;
