@@ -41,57 +41,64 @@ HOLDFAST_INLINE std::uint32_t word_of(float value) { return std::bit_cast<std::u
 // --- values --------------------------------------------------------------------------------------
 
 HOLDFAST_INLINE void to_f16_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict in = a.in[0];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i) put(bytes, i, half_of(float_of(in[i])));
+  for (std::size_t i = 0; i < count; ++i) put(bytes, i, half_of(float_of(in[i])));
 }
 HOLDFAST_INLINE void from_f16_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict out = a.out[0];
-  for (std::size_t i = 0; i < a.count; ++i)
-    out[i] = word_of(from_half(get<std::uint16_t>(bytes, i)));
+  for (std::size_t i = 0; i < count; ++i) out[i] = word_of(from_half(get<std::uint16_t>(bytes, i)));
 }
 HOLDFAST_INLINE void to_unorm8_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict in = a.in[0];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     put(bytes, i, static_cast<std::uint8_t>(unorm_of(float_of(in[i]), 255.0f)));
 }
 HOLDFAST_INLINE void from_unorm8_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict out = a.out[0];
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     out[i] = word_of(from_unorm(get<std::uint8_t>(bytes, i), 255.0f));
 }
 HOLDFAST_INLINE void to_unorm16_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict in = a.in[0];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     put(bytes, i, static_cast<std::uint16_t>(unorm_of(float_of(in[i]), 65535.0f)));
 }
 HOLDFAST_INLINE void from_unorm16_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict out = a.out[0];
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     out[i] = word_of(from_unorm(get<std::uint16_t>(bytes, i), 65535.0f));
 }
 
 // --- pixels --------------------------------------------------------------------------------------
 
 HOLDFAST_INLINE void to_octahedral_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict x = a.in[0];
   const std::uint32_t* __restrict y = a.in[1];
   const std::uint32_t* __restrict z = a.in[2];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     put(bytes, i, octahedral_of(float_of(x[i]), float_of(y[i]), float_of(z[i])));
 }
 HOLDFAST_INLINE void from_octahedral_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict x = a.out[0];
   std::uint32_t* __restrict y = a.out[1];
   std::uint32_t* __restrict z = a.out[2];
-  for (std::size_t i = 0; i < a.count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Direction d = from_octahedral(get<std::uint32_t>(bytes, i));
     x[i] = word_of(d.x);
     y[i] = word_of(d.y);
@@ -99,19 +106,21 @@ HOLDFAST_INLINE void from_octahedral_body(const Decode& a) {
   }
 }
 HOLDFAST_INLINE void to_rgb9e5_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict r = a.in[0];
   const std::uint32_t* __restrict g = a.in[1];
   const std::uint32_t* __restrict b = a.in[2];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
     put(bytes, i, rgb9e5_of(float_of(r[i]), float_of(g[i]), float_of(b[i])));
 }
 HOLDFAST_INLINE void from_rgb9e5_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict r = a.out[0];
   std::uint32_t* __restrict g = a.out[1];
   std::uint32_t* __restrict b = a.out[2];
-  for (std::size_t i = 0; i < a.count; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const auto pixel = get<std::uint32_t>(bytes, i);
     r[i] = word_of(from_rgb9e5(pixel, 0));
     g[i] = word_of(from_rgb9e5(pixel, 1));
@@ -122,45 +131,52 @@ HOLDFAST_INLINE void from_rgb9e5_body(const Decode& a) {
 // --- ids -----------------------------------------------------------------------------------------
 
 HOLDFAST_INLINE void to_u8_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict in = a.in[0];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i) put(bytes, i, static_cast<std::uint8_t>(in[i]));
+  for (std::size_t i = 0; i < count; ++i) put(bytes, i, static_cast<std::uint8_t>(in[i]));
 }
 HOLDFAST_INLINE void from_u8_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict out = a.out[0];
-  for (std::size_t i = 0; i < a.count; ++i) out[i] = get<std::uint8_t>(bytes, i);
+  for (std::size_t i = 0; i < count; ++i) out[i] = get<std::uint8_t>(bytes, i);
 }
 HOLDFAST_INLINE void to_u16_body(const Encode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::uint32_t* __restrict in = a.in[0];
   std::byte* __restrict bytes = a.bytes;
-  for (std::size_t i = 0; i < a.count; ++i) put(bytes, i, static_cast<std::uint16_t>(in[i]));
+  for (std::size_t i = 0; i < count; ++i) put(bytes, i, static_cast<std::uint16_t>(in[i]));
 }
 HOLDFAST_INLINE void from_u16_body(const Decode& a) {
+  const std::size_t count = a.count;  // a byte that is written might be part of it
   const std::byte* __restrict bytes = a.bytes;
   std::uint32_t* __restrict out = a.out[0];
-  for (std::size_t i = 0; i < a.count; ++i) out[i] = get<std::uint16_t>(bytes, i);
+  for (std::size_t i = 0; i < count; ++i) out[i] = get<std::uint16_t>(bytes, i);
 }
 
 // --- ranges --------------------------------------------------------------------------------------
 
+/// Flags are sign bits, which loops collect without a choice.
 HOLDFAST_INLINE void float_range_body(const FloatRange& a) {
   constexpr std::int32_t kInfinite = 0x7f800000;
+  const std::size_t count = a.count;
   const std::uint32_t* __restrict in = a.in;
   std::int32_t most = 0, negative = 0, infinite = 0, nan = 0;
-  for (std::size_t i = 0; i < a.count; ++i) {
-    const auto size = static_cast<std::int32_t>(in[i] & 0x7fffffffu);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto word = static_cast<std::int32_t>(in[i]);
+    const std::int32_t size = word & 0x7fffffff;
     const std::int32_t finite = size < kInfinite ? size : 0;
     most = most > finite ? most : finite;
-    infinite |= size == kInfinite ? 1 : 0;
-    nan |= size > kInfinite ? 1 : 0;
-    negative |= float_of(in[i]) < 0.0f ? 1 : 0;
+    nan |= kInfinite - size;
+    infinite |= (size ^ kInfinite) - 1;
+    negative |= word & ~(size - 1);  // not of -0
   }
   ValueRange& range = *a.range;
   range.most = max_of(range.most, static_cast<std::uint32_t>(most));
-  range.negative |= static_cast<std::uint32_t>(negative);
-  range.infinite |= static_cast<std::uint32_t>(infinite);
-  range.nan |= static_cast<std::uint32_t>(nan);
+  range.negative |= negative < 0 ? 1 : 0;
+  range.infinite |= infinite < 0 ? 1 : 0;
+  range.nan |= nan < 0 ? 1 : 0;
 }
 
 HOLDFAST_KERNEL(to_f16, Encode)
@@ -216,7 +232,9 @@ void add_float_range(const std::uint32_t* values, std::size_t count, ValueRange&
 }
 
 void add_id_range(const std::uint32_t* values, std::size_t count, ValueRange& range) {
-  for (std::size_t i = 0; i < count; ++i) range.most = max_of(range.most, values[i]);
+  std::uint32_t most = range.most;
+  for (std::size_t i = 0; i < count; ++i) most = max_of(most, values[i]);
+  range.most = most;
 }
 
 }  // namespace holdfast::wire

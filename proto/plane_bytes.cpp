@@ -46,6 +46,7 @@ void for_each_run(const Plane& plane, PlaneFormat format, std::size_t offset, st
 bool holds(PlaneFormat format, const ValueRange& range) {
   // Where half and rgb9e5 have steps of 2^-24, they are below 2^-14 of the largest value.
   constexpr float kLargestHalf = 65504.0f, kLeastLargest = 0x1p-10f, kLeastLargestUnorm = 0.25f;
+  constexpr float kLargestUnorm = 1.0f + 0x1p-17f;  // sums that round a little above 1 are 1
   const float most = std::bit_cast<float>(range.most);
   const bool plain = !range.negative && !range.infinite && !range.nan;
   const auto within = [most](float least, float largest) {
@@ -54,7 +55,7 @@ bool holds(PlaneFormat format, const ValueRange& range) {
   switch (format) {
     case PlaneFormat::kF16: return within(kLeastLargest, kLargestHalf);
     case PlaneFormat::kUnorm8:
-    case PlaneFormat::kUnorm16: return plain && within(kLeastLargestUnorm, 1.0f);
+    case PlaneFormat::kUnorm16: return plain && within(kLeastLargestUnorm, kLargestUnorm);
     case PlaneFormat::kRgb9e5: return plain && within(kLeastLargest, 65408.0f);
     case PlaneFormat::kU8: return range.most < 1u << 8;
     case PlaneFormat::kU16: return range.most < 1u << 16;

@@ -1,6 +1,5 @@
 #include "proto/predicted_bytes.h"
 
-#include <algorithm>
 #include <cstdint>
 
 #include "core/kernels/variants.h"
@@ -22,17 +21,6 @@ HOLDFAST_INLINE T element_at(const std::byte* bytes, std::size_t i) {
 }
 
 template <class T>
-HOLDFAST_INLINE void separate(T value, std::size_t i, std::size_t count, std::byte* out) {
-  const std::uint32_t word = value;
-  out[i] = static_cast<std::byte>(word);
-  if constexpr (sizeof(T) >= 2) out[count + i] = static_cast<std::byte>(word >> 8);
-  if constexpr (sizeof(T) == 4) {
-    out[2 * count + i] = static_cast<std::byte>(word >> 16);
-    out[3 * count + i] = static_cast<std::byte>(word >> 24);
-  }
-}
-
-template <class T>
 HOLDFAST_INLINE T joined(const std::byte* in, std::size_t i, std::size_t count) {
   std::uint32_t word = static_cast<std::uint8_t>(in[i]);
   if constexpr (sizeof(T) >= 2)
@@ -44,14 +32,20 @@ HOLDFAST_INLINE T joined(const std::byte* in, std::size_t i, std::size_t count) 
   return static_cast<T>(word);
 }
 
+/// A pass for each byte of an element: a loop with four places to write to does not vectorise.
 template <class T>
 HOLDFAST_INLINE void predict_block(const Block& a) {
   const std::byte* __restrict in = a.in;
   std::byte* __restrict out = a.out;
   const std::size_t count = a.count, width = a.width, first = min_of(a.width, a.count);
-  for (std::size_t i = 0; i < first; ++i) separate(element_at<T>(in, i), i, count, out);
-  for (std::size_t i = first; i < count; ++i)
-    separate(static_cast<T>(element_at<T>(in, i) - element_at<T>(in, i - width)), i, count, out);
+  for (unsigned shift = 0; shift < 8 * sizeof(T); shift += 8, out += count) {
+    for (std::size_t i = 0; i < first; ++i)
+      out[i] = static_cast<std::byte>(element_at<T>(in, i) >> shift);
+    for (std::size_t i = first; i < count; ++i) {
+      const T difference = static_cast<T>(element_at<T>(in, i) - element_at<T>(in, i - width));
+      out[i] = static_cast<std::byte>(difference >> shift);
+    }
+  }
 }
 
 /// One row, from the row above: the two do not overlap, so that the loop vectorises.

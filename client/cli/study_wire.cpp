@@ -37,7 +37,7 @@ class CostMeter {
     double encode = 0, decode = 0;
     for (const PlaneId id : ids) {
       const Plane& plane = planes.at(id);
-      WireCost& bytes = bytes_[id];
+      WireCost& sum = sums_[id];
       const double start = thread_ns();
       const wire::PlaneCoding coding = wire::fitting_coding(plane, codings_);
       const std::size_t size = wire::plane_bytes(plane, coding.format);
@@ -53,11 +53,14 @@ class CostMeter {
         const std::size_t held = std::min(wire::kMaxChunkBytes, size - offset);
         if (!coder_.decode(decoded, coding, offset, held, blocks_[i]))
           throw std::logic_error("a block cannot be decoded");
-        bytes.coded_bytes += static_cast<double>(blocks_[i].size());
+        sum.coded_bytes += static_cast<double>(blocks_[i].size());
       }
-      decode += thread_ns() - restart;
+      const double decode_ns = thread_ns() - restart;
+      sum.encode_ns += middle - start;
+      sum.decode_ns += decode_ns;
       encode += middle - start;
-      bytes.plain_bytes += static_cast<double>(size);
+      decode += decode_ns;
+      sum.plain_bytes += static_cast<double>(size);
     }
     pixels_ += pixels;
     encode_ns_.push_back(encode / pixels);
@@ -65,10 +68,12 @@ class CostMeter {
   }
 
   std::map<PlaneId, WireCost> planes() const {
-    auto out = bytes_;
+    auto out = sums_;
     for (auto& [id, cost] : out) {
       cost.plain_bytes /= pixels_;
       cost.coded_bytes /= pixels_;
+      cost.encode_ns /= pixels_;
+      cost.decode_ns /= pixels_;
     }
     return out;
   }
@@ -87,7 +92,7 @@ class CostMeter {
   wire::PlaneCoder coder_;
   std::vector<std::string> blocks_;
   PlaneSet decoded_;
-  std::map<PlaneId, WireCost> bytes_;
+  std::map<PlaneId, WireCost> sums_;
   std::vector<double> encode_ns_, decode_ns_;
   double pixels_ = 0;
 };
@@ -139,7 +144,8 @@ class SequenceStudy {
       const Plane& depth = frame->planes.at({PlaneKind::kDepth, {}});
       const double pixels = static_cast<double>(depth.width()) * depth.height();
       up.add(frame->planes, sequence_.planes(), pixels);
-      down.add(results, session.results(), pixels);
+      down.add(exact_[i], session.results(),
+               pixels);  // before any rounding, as the server has them
       const measure::Mask surface = measure::surface_mask(depth);
       const PlaneSet references =
           sequence_.has_reference(indices[i]) ? sequence_.read_reference(indices[i]) : PlaneSet();

@@ -38,7 +38,7 @@ struct WireError {
 struct WireFigures {
   std::string sequence, profile;
   WireCost up, down;
-  std::map<PlaneId, WireCost> planes_up, planes_down;  ///< bytes alone
+  std::map<PlaneId, WireCost> planes_up, planes_down;  ///< times: means over frames
   std::map<PlaneId, WireError> layers;
 };
 

@@ -8,14 +8,11 @@ namespace {
 
 using measure::number_text;
 
-nlohmann::ordered_json cost_json(const WireCost& cost, bool with_times) {
-  nlohmann::ordered_json json{{"plain_bytes_per_pixel", cost.plain_bytes},
-                              {"bytes_per_pixel", cost.coded_bytes}};
-  if (with_times) {
-    json["encode_ns_per_pixel"] = cost.encode_ns;
-    json["decode_ns_per_pixel"] = cost.decode_ns;
-  }
-  return json;
+nlohmann::ordered_json cost_json(const WireCost& cost) {
+  return {{"plain_bytes_per_pixel", cost.plain_bytes},
+          {"bytes_per_pixel", cost.coded_bytes},
+          {"encode_ns_per_pixel", cost.encode_ns},
+          {"decode_ns_per_pixel", cost.decode_ns}};
 }
 
 /// A number, or null where it is not finite.
@@ -86,12 +83,11 @@ nlohmann::ordered_json wire_json(const std::vector<WireFigures>& figures) {
   for (const WireFigures& f : figures) {
     nlohmann::ordered_json row{{"sequence", f.sequence},
                                {"profile", f.profile},
-                               {"up", cost_json(f.up, true)},
-                               {"down", cost_json(f.down, true)}};
-    for (const auto& [id, cost] : f.planes_up)
-      row["planes_up"][plane_name(id)] = cost_json(cost, false);
+                               {"up", cost_json(f.up)},
+                               {"down", cost_json(f.down)}};
+    for (const auto& [id, cost] : f.planes_up) row["planes_up"][plane_name(id)] = cost_json(cost);
     for (const auto& [id, cost] : f.planes_down)
-      row["planes_down"][plane_name(id)] = cost_json(cost, false);
+      row["planes_down"][plane_name(id)] = cost_json(cost);
     for (const auto& [id, error] : f.layers)
       row["layers"][plane_name(id)] = {{"psnr", finite_json(error.psnr)},
                                        {"rmse", error.rmse},

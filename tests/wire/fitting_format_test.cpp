@@ -50,7 +50,8 @@ TEST(FittingFormat, UnormTakesNothingThatItWouldClampOrLose) {
   const auto visibility = PlaneKind::kVisibility;
   EXPECT_EQ(fitted(visibility, 1.0f, kUnorm8), kUnorm8);
   EXPECT_EQ(fitted(visibility, 0.0f, kUnorm8), kUnorm8);
-  EXPECT_EQ(fitted(visibility, 1.0000001f, kUnorm8), kF16);
+  EXPECT_EQ(fitted(visibility, 1.000007f, kUnorm16), kUnorm16) << "within half a step of 1";
+  EXPECT_EQ(fitted(visibility, 1.00001f, kUnorm8), kF16);
   EXPECT_EQ(fitted(visibility, 1e6f, kUnorm8), kF32);
   EXPECT_EQ(fitted(visibility, -0.1f, kUnorm8), kF16);
   EXPECT_EQ(fitted(visibility, NAN, kUnorm8), kF16);
