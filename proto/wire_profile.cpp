@@ -40,10 +40,10 @@ constexpr Row kInputRows[] = {
 };
 
 constexpr Row kResultRows[] = {
-    {PlaneKind::kComposite, {kF16, kPlain}, {kRgb9e5, kPlain}},
+    {PlaneKind::kComposite, {kF16, kLz4}, {kRgb9e5, kZstd}},
     {PlaneKind::kVisibility, {kUnorm16, kLz4}, {kUnorm8, kZstd}},
-    {PlaneKind::kGlossy, {kF16, kPlain}, {kRgb9e5, kPlain}},
-    {PlaneKind::kIndirect, {kF16, kPlain}, {kRgb9e5, kPlain}},
+    {PlaneKind::kGlossy, {kF16, kLz4}, {kRgb9e5, kZstd}},
+    {PlaneKind::kIndirect, {kF16, kLz4}, {kRgb9e5, kZstd}},
     {PlaneKind::kDebugMotion, {kF32, kLz4}, {kF16, kZstd}},
     {PlaneKind::kDebugHistory, {kF32, kLz4}, {kF16, kZstd}},
     {PlaneKind::kDebugConfidence, {kF32, kLz4}, {kF16, kZstd}},
