@@ -5,6 +5,7 @@
 #include "tests/service/raw_client.h"
 #include "tests/service/rendered.h"
 #include "tests/service/served.h"
+#include "tests/service/server_process.h"
 
 namespace holdfast {
 namespace {
@@ -140,6 +141,76 @@ TEST_F(WireSession, CountsTheSameRepairsUnderEveryProfile) {
   EXPECT_GE(exact.size(), 5u);
   EXPECT_EQ(repairs(server, room.config, frame, "balanced"), exact);
   EXPECT_EQ(repairs(server, room.config, frame, "compact"), exact);
+}
+
+/// A session on a server that may just have been started.
+client::Session connected(const client::SessionOptions& options) {
+  for (int attempts = 0;; ++attempts) try {
+      return client::Session(options);
+    } catch (const client::ConnectionError&) {
+      if (attempts == 1000) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
+TEST_F(WireSession, PlanesOfSeveralChunksArriveWhole) {
+  const DenoiserConfig config = test::small_config(640, 480);
+  std::vector<Frame> frames;
+  for (int i = 0; i < 4; ++i) frames.push_back(test::small_frame(config, i));
+  const auto exact = test::direct(config, frames);
+  for (const char* wire : {"balanced", "compact"}) {
+    const auto results = test::served(server, config, frames, wire);
+    ASSERT_EQ(results.size(), exact.size());
+    for (std::size_t i = 0; i < exact.size(); ++i)
+      for (const Plane& plane : exact[i])
+        for (int c = 0; c < plane.channels(); ++c)
+          for (int y = 0; y < plane.height(); ++y)
+            for (int x = 0; x < plane.width(); ++x)
+              ASSERT_NEAR(results[i].at(plane.id()).channel(c).at(x, y), plane.channel(c).at(x, y),
+                          0.006f)
+                  << wire << " " << plane_name(plane.id()) << " frame " << i;
+  }
+}
+
+TEST_F(WireSession, SessionsThatEndInTheMiddleOfAFrameLeaveOthersAlone) {
+  const DenoiserConfig config = test::small_config(640, 480);
+  const auto frame = std::make_shared<const Frame>(test::small_frame(config, 0));
+  client::SessionOptions options = test::session_options(server, config);
+  options.wire = "compact";
+  client::Session other(options);
+  for (int i = 0; i < 5; ++i) {
+    client::Session session(options);
+    session.submit(frame);
+    if (i % 2) session.try_submit(std::make_shared<const Frame>(test::small_frame(config, 1)));
+  }
+  other.submit(frame);
+  const auto output = other.receive();
+  ASSERT_TRUE(output && !output->error);
+  other.close();
+}
+
+TEST_F(WireSession, AnotherServerIsWarmedWithCodedFrames) {
+  const DenoiserConfig config = test::small_config();
+  const test::SocketAddress socket;
+  auto process = std::make_unique<test::ServerProcess>(socket.address());
+  client::SessionOptions options = test::session_options(server, config);
+  options.address = socket.address();
+  options.wire = "compact";
+  client::Session session = connected(options);
+  const auto pass = [&](int index) {
+    session.submit(std::make_shared<const Frame>(test::small_frame(config, index)));
+    auto output = session.receive();
+    EXPECT_TRUE(output && !output->error);
+    return output;
+  };
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(pass(i)->index, i);
+  process->signal(SIGKILL);
+  process->wait();
+  process = std::make_unique<test::ServerProcess>(socket.address());
+  const auto output = pass(4);
+  EXPECT_TRUE(output->history_lost);
+  EXPECT_FALSE(output->history_reset) << "it was warmed";
+  session.close();
 }
 
 TEST_F(WireSession, CorruptDataFailsItsFrameAloneAndHistoryGoesOn) {
