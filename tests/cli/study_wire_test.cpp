@@ -42,7 +42,7 @@ TEST_F(StudyWire, GivesBytesTimesAndErrorsOfEveryProfile) {
   EXPECT_EQ(exact["down"]["bytes_per_pixel"], 16.0);
   EXPECT_EQ(exact["layers"]["composite"]["rmse"], 0.0);
   EXPECT_EQ(compact["planes_up"]["objectId"]["plain_bytes_per_pixel"], 1.0);
-  EXPECT_EQ(compact["planes_down"]["composite"]["bytes_per_pixel"], 4.0);
+  EXPECT_EQ(compact["planes_down"]["composite"]["plain_bytes_per_pixel"], 4.0);
   EXPECT_LT(balanced["up"]["bytes_per_pixel"], 18.0);
   EXPECT_GT(balanced["layers"]["composite"]["psnr"], 60.0);
   EXPECT_GT(compact["layers"]["composite"]["psnr"], 45.0);
