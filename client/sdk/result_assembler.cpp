@@ -26,7 +26,10 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
     const PlaneId id = results_[i];
     const v1::FramePlane& announced = result.planes(static_cast<int>(i));
     require(announced.plane() == i, "result planes must be announced in their order");
-    codings_.push_back(wire::coding_from_numbers(id, announced.format(), announced.codec()));
+    const auto format = wire::format_from_number(announced.format(), id.kind);
+    const auto codec = wire::codec_from_number(announced.codec());
+    require(format && codec, "a result plane must have a known codec and a format that suits it");
+    codings_.push_back({*format, *codec});
     const PlaneSize size = plane_size(id, width_, height_);
     output_->planes.add(id, size.width, size.height);
   }
