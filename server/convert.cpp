@@ -5,7 +5,7 @@
 
 #include "core/frame/conventions.h"
 #include "core/frame/error.h"
-#include "proto/plane_bytes.h"
+#include "proto/wire_profile.h"
 #include "server/config.h"
 
 namespace holdfast::server {
@@ -111,11 +111,6 @@ double ms_between(FrameSlot::TimePoint a, FrameSlot::TimePoint b) {
 
 }  // namespace
 
-const std::vector<std::string>& wire_names() {
-  static const std::vector<std::string> names{"exact"};
-  return names;
-}
-
 SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   SessionConfig config;
   DenoiserConfig& core = config.denoiser;
@@ -138,7 +133,7 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   core.half_resolution.assign(request.half_resolution().begin(), request.half_resolution().end());
   core.seed = request.seed();
   core.debug_planes = request.debug_planes();
-  config.wire = checked_name("wire", request.wire(), wire_names(), config.wire);
+  config.wire = checked_name("wire", request.wire(), wire::profile_names(), config.wire);
   config.budget_ms = request.budget_ms();
   if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
     throw InputError("budget", "must be finite and at least 0 ms",
@@ -174,7 +169,7 @@ void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config,
 }
 
 void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
-                        v1::FrameResult& result) {
+                        std::span<const wire::PlaneCoding> codings, v1::FrameResult& result) {
   result.set_index(slot.frame.index);
   v1::FrameTiming& timing = *result.mutable_timing();
   timing.set_receive_ms(ms_between(slot.begun, slot.ended));
@@ -200,6 +195,9 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
     out.set_plane(static_cast<std::uint32_t>(i));
     out.set_width_px(static_cast<std::uint32_t>(plane.width()));
     out.set_height_px(static_cast<std::uint32_t>(plane.height()));
+    out.set_format(
+        static_cast<v1::PlaneFormat>(wire::format_number(codings[i].format, plane.id().kind)));
+    out.set_codec(static_cast<v1::PlaneCodec>(codings[i].codec));
   }
   result.set_history_reset(report.history_reset);
   result.set_mean_history_frames(report.mean_history_frames);

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include "holdfast/v1/denoise_service.pb.h"
 #include "holdfast/v1/session_service.pb.h"
+#include "proto/plane_coder.h"
 #include "server/frame_slot.h"
 #include "server/session.h"
 
@@ -9,17 +12,15 @@
 /// by the core behind it, before anything of its size is allocated.
 namespace holdfast::server {
 
-/// Names accepted as CreateSessionRequest.wire.
-const std::vector<std::string>& wire_names();
-
 /// Throws InputError naming what breaks a rule.
 SessionConfig session_config_from(const v1::CreateSessionRequest& request);
 
 /// Index, cut, camera and transforms of a frame; its planes are untouched. Throws InputError.
 void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config, Frame& frame);
 
-/// The message that answers a frame, with or without an error.
+/// The message that answers a frame, with or without an error. `codings`: of the planes that
+/// follow, by position in the session's results.
 void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
-                        v1::FrameResult& result);
+                        std::span<const wire::PlaneCoding> codings, v1::FrameResult& result);
 
 }  // namespace holdfast::server

@@ -239,7 +239,7 @@ bool DenoiseStream::next_response() {
     return true;
   }
   while (!sending_.empty()) {
-    if (!sender_) sender_.emplace(*sending_.front(), session_->config());
+    if (!sender_) sender_.emplace(*sending_.front(), session_->config(), coder_);
     if (encode(*sending_.front())) return true;
     sender_.reset();
     FrameSlot& sent = *sending_.front();

@@ -102,6 +102,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
   std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
+  wire::PlaneCoder coder_;          ///< of the sender
   std::optional<ResultSender> sender_;
   std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
   std::string preset_;                       ///< of the answer that is being sent

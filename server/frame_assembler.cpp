@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/frame/error.h"
-#include "proto/plane_bytes.h"
 #include "server/convert.h"
 #include "server/status.h"
 
@@ -15,6 +14,27 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
 }
 
 std::string bytes_text(std::uint64_t bytes) { return std::to_string(bytes) + " bytes"; }
+
+/// Bytes of the plane that a chunk holds; throws InputError if its sizes break a rule.
+std::uint64_t held_bytes(const v1::PlaneChunk& chunk, wire::PlaneCoding coding,
+                         const std::string& name) {
+  const bool coded = coding.codec != wire::Codec::kNone;
+  if (!coded && chunk.plain_bytes() != 0)
+    throw InputError("plain_bytes of a chunk of " + name, "must be 0 without a codec",
+                     std::to_string(chunk.plain_bytes()));
+  const std::uint64_t bytes = coded ? chunk.plain_bytes() : chunk.data().size();
+  const std::size_t element = wire::element_bytes(coding.format);
+  if (bytes == 0 || bytes > wire::kMaxChunkBytes || bytes % element != 0)
+    throw InputError("chunk of " + name,
+                     "must have a multiple of " + std::to_string(element) + " bytes, at least " +
+                         std::to_string(element) + " and at most " +
+                         std::to_string(wire::kMaxChunkBytes),
+                     bytes_text(bytes));
+  if (coded && chunk.data().size() > bytes)
+    throw InputError("data of a chunk of " + name, "must be at most its " + bytes_text(bytes),
+                     bytes_text(chunk.data().size()));
+  return bytes;
+}
 
 }  // namespace
 
@@ -63,7 +83,8 @@ void FrameAssembler::announce(const v1::FramePlane& message) {
   if (message.width_px() != width || message.height_px() != height)
     throw InputError("plane " + plane_name(id), "must be " + size_text(width, height),
                      size_text(message.width_px(), message.height_px()));
-  progress.size = wire::plane_bytes(id, size);
+  progress.coding = wire::coding_from_numbers(id, message.format(), message.codec());
+  progress.size = wire::plane_bytes(id, size, progress.coding.format);
 }
 
 void FrameAssembler::add(const v1::PlaneChunk& chunk) {
@@ -83,15 +104,10 @@ void FrameAssembler::write(const v1::PlaneChunk& chunk) {
         "unknown");
   Progress& progress = progress_[chunk.plane()];
   const std::string name = "plane " + plane_name(config_.denoiser.planes[chunk.plane()]);
-  const std::uint64_t bytes = chunk.data().size();
   if (progress.complete)
     throw InputError("chunk of " + name, "must not follow the plane's last chunk",
                      "at offset " + std::to_string(chunk.offset()));
-  if (bytes == 0 || bytes > wire::kMaxChunkBytes || bytes % 4 != 0)
-    throw InputError("chunk of " + name,
-                     "must have a multiple of 4 bytes, at least 4 and at most " +
-                         std::to_string(wire::kMaxChunkBytes),
-                     bytes_text(bytes));
+  const std::uint64_t bytes = held_bytes(chunk, progress.coding, name);
   if (chunk.offset() != progress.received)
     throw InputError("offset of a chunk of " + name,
                      "must be " + std::to_string(progress.received) + ", where the last one ended",
@@ -99,7 +115,11 @@ void FrameAssembler::write(const v1::PlaneChunk& chunk) {
   if (bytes > progress.size - progress.received)
     throw InputError(name, "must have " + bytes_text(progress.size),
                      "at least " + bytes_text(progress.received + bytes));
-  wire::write_plane_bytes(*progress.plane, progress.received, bytes, chunk.data().data());
+  if (!coder_.decode(*progress.plane, progress.coding, progress.received, bytes, chunk.data()))
+    throw InputError("data of a chunk of " + name,
+                     "must be " + bytes_text(bytes) + " of " +
+                         std::string(wire::codec_name(progress.coding.codec)),
+                     "corrupt");
   progress.received += bytes;
   progress.complete = chunk.last();
   if (chunk.last() != (progress.received == progress.size))

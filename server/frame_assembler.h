@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/plane_coder.h"
 #include "server/frame_slot.h"
 #include "server/session.h"
 
@@ -32,7 +33,8 @@ class FrameAssembler {
   /// How much of a declared plane has come. `plane` is null if the frame did not announce it.
   struct Progress {
     Plane* plane = nullptr;
-    std::uint64_t size = 0, received = 0;
+    wire::PlaneCoding coding;
+    std::uint64_t size = 0, received = 0;  ///< bytes before the codec
     bool complete = false;
   };
 
@@ -43,6 +45,7 @@ class FrameAssembler {
   const SessionConfig& config_;
   FrameSlot* slot_ = nullptr;
   std::vector<Progress> progress_;  ///< by position in the session's planes
+  wire::PlaneCoder coder_;
 };
 
 }  // namespace holdfast::server

@@ -1,6 +1,7 @@
 #include "server/session_service.h"
 
 #include "proto/plane_bytes.h"
+#include "proto/wire_profile.h"
 #include "server/convert.h"
 #include "server/error.h"
 #include "server/status.h"
@@ -55,7 +56,7 @@ grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerCont
     response->set_version(kVersion);
     for (const std::string& name : recipe_names()) response->add_recipes(name);
     for (const std::string& name : preset_names()) response->add_presets(name);
-    for (const std::string& name : wire_names()) response->add_wires(name);
+    for (const std::string& name : wire::profile_names()) response->add_wires(name);
     response->set_max_dimension_px(static_cast<std::uint32_t>(state_.config.limits.max_dimension));
     response->set_max_chunk_bytes(wire::kMaxChunkBytes);
     response->set_max_sessions(static_cast<std::uint32_t>(state_.config.limits.max_sessions));

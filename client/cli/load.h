@@ -34,6 +34,7 @@ struct LoadOptions {
   std::string preset = "balanced";
   Link link;           ///< between each session and the server
   double churn_s = 0;  ///< each client leaves after that long and comes back anew; 0 = never
+  std::string wire = "exact";
 };
 
 /// Where the time of the answered frames went, milliseconds, one value a frame.

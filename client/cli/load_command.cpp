@@ -86,6 +86,7 @@ void add_load(CLI::App& app) {
       ->capture_default_str();
   command.add_option("--recipe", options.recipe)->capture_default_str();
   command.add_option("--preset", options.preset)->capture_default_str();
+  command.add_option("--wire", options.wire, "wire profile")->capture_default_str();
   command
       .add_option("--search", args->search_ms,
                   "looks for the largest --fps whose 95th percentile of latency stays within that "

@@ -23,6 +23,7 @@ client::SessionOptions session_options(const LoadOptions& options, const std::st
   out.recipe = options.recipe;
   out.preset = options.preset;
   use_access(options.access, out);
+  out.wire = options.wire;
   out.rewarm_frames = 0;  // frames are used again as soon as they are answered
   return out;
 }

@@ -48,6 +48,7 @@ nlohmann::ordered_json load_json(const LoadResult& result) {
           {"clients", result.clients},
           {"recipe", options.recipe},
           {"preset", options.preset},
+          {"wire", options.wire},
           {"submitted", result.submitted},
           {"answered", result.answered},
           {"frames_per_second", result.frames_per_second()},

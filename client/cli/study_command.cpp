@@ -10,6 +10,7 @@
 #include "client/cli/study_text.h"
 #include "client/cli/study_trade.h"
 #include "client/cli/study_vectors.h"
+#include "client/cli/study_wire.h"
 #include "client/measure/claims_text.h"
 #include "client/measure/markdown.h"
 #include "client/measure/trade_text.h"
@@ -26,6 +27,7 @@ struct Arguments {
   bool with_quality = false, with_trade = false, with_vectors = false, with_stability = false, with_oracle = false,
        quick = false;
   bool with_long = false, with_large = false;
+  WireStudyOptions wire;
 
   StabilityStudyOptions of_stability() const {
     return {study.recipes, with_long, with_large, study.quiet, json};
@@ -64,6 +66,13 @@ void run_stability(const Arguments& arguments) {
   const auto study = arguments.with_oracle ? study_oracle : study_stability;
   write_tables(arguments, study(arguments.of_stability(), passed));
   if (!passed) throw std::runtime_error("an error is beyond its limit");
+}
+
+void run_wire(Arguments& arguments) {
+  arguments.wire.quiet = arguments.study.quiet;
+  const auto figures = study_wire(arguments.wire);
+  if (!arguments.json.empty()) write_json_file(arguments.json, wire_json(figures));
+  write_tables(arguments, wire_markdown(figures));
 }
 
 void run_quality(Arguments& arguments) {
@@ -163,7 +172,8 @@ void add_study(CLI::App& app) {
   study.recipes = recipe_names();
   CLI::App& command = *app.add_subcommand(
       "study",
-      "Measure recipes, motion vectors, stability or rounding: figures, claims, tables, pictures");
+      "Measure recipes, presets, motion vectors, stability, rounding or wire profiles: figures, claims, "
+      "pictures");
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");
@@ -179,6 +189,10 @@ void add_study(CLI::App& app) {
   CLI::Option* with_oracle = subject.add_flag(
       "--oracle", arguments->with_oracle,
       "How far the kernels are, stage by stage, from the same frames in double precision");
+  subject
+      .add_option("--wire", arguments->wire.sequences,
+                  "Wire profiles on these sequences: bytes, times and errors of each")
+      ->delimiter(',');
   command.add_option("-o,--output", study.out,
                      "Folder of everything that is made; of the pictures of --vectors");
   add_quality_options(command, with_vectors, with_stability, with_oracle, quality, study);
@@ -203,6 +217,8 @@ void add_study(CLI::App& app) {
       run_stability(*arguments);
     else if (arguments->with_trade)
       run_trade(*arguments);
+    else if (!arguments->wire.sequences.empty())
+      run_wire(*arguments);
     else
       run_quality(*arguments);
   });

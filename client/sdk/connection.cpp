@@ -6,6 +6,7 @@ Connection::Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Confi
                        const v1::Hello& hello)
     : exchange_(exchange),
       config_(std::move(config)),
+      writer_{config_.wire, {}},
       assembler_(config_.results, config_.width, config_.height) {
   const std::lock_guard lock(mutex_);  // reactions see a finished object, and wait for it here
   stub.async()->Denoise(&context_, this);
@@ -15,11 +16,13 @@ Connection::Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Confi
   StartWrite(&request_);
   StartRead(&response_);
   StartCall();
+  if (config_.wire != &wire::exact_profile()) encoder_ = std::thread([this] { encode(); });
 }
 
 Connection::~Connection() {
   cancel();
   wait_end();
+  if (encoder_.joinable()) encoder_.join();
 }
 
 grpc::Status Connection::wait_open(std::chrono::milliseconds timeout) {
@@ -66,6 +69,7 @@ void Connection::OnReadDone(bool ok) {
     } else {
       ended_ = true;
       release = true;
+      wake_.notify_all();
     }
     changed_.notify_all();
   }
@@ -98,32 +102,78 @@ void Connection::OnWriteDone(bool ok) {
   if (ok) write_on();
 }
 
-void Connection::write_on() {
-  if (writing_ || ended_ || writes_done_ || !welcome_) return;
-  for (;;) {
-    if (sender_ && sender_->next(request_)) {
-      if (request_.has_plane_chunk()) exchange_.count(request_.plane_chunk().data().size(), 0);
-      writing_ = true;
-      StartWrite(&request_);
-      return;
-    }
-    sender_.reset();
-    std::optional<OutgoingFrame> frame = exchange_.next();
-    if (!frame) break;
-    sender_.emplace(std::move(*frame), config_.planes);
-  }
-  if (!exchange_.all_sent()) return;
-  writes_done_ = true;
-  StartWritesDone();
-}
-
 void Connection::OnDone(const grpc::Status& status) {
   const std::lock_guard lock(mutex_);
   ended_ = true;
   status_ = status;
   if (!violation_.empty())
     status_ = {grpc::StatusCode::INTERNAL, "the server broke the protocol: " + violation_};
+  wake_.notify_all();
   changed_.notify_all();  // under the mutex: the destructor may be waiting
+}
+
+// --- writing -------------------------------------------------------------------------------------
+
+void Connection::write_on() {
+  if (encoder_.joinable()) {
+    start_write();
+    woken_ = true;
+    wake_.notify_one();
+    return;
+  }
+  if (writing_ || ended_ || writes_done_ || !welcome_) return;
+  has_prepared_ = next_message(prepared_, nullptr);
+  start_write();
+  end_writes();
+}
+
+/// Makes the next message, of the frame at hand or the next one; false if there is nothing to send
+/// now. Takes `lock`, if given, off while it encodes.
+bool Connection::next_message(v1::DenoiseRequest& message, std::unique_lock<std::mutex>* lock) {
+  for (;;) {
+    if (!sender_) {
+      std::optional<OutgoingFrame> frame = exchange_.next();
+      if (!frame) return false;
+      sender_.emplace(std::move(*frame), config_.planes, writer_);
+    }
+    if (lock != nullptr) lock->unlock();
+    const bool made = sender_->next(message);
+    if (lock != nullptr) lock->lock();
+    if (made) return true;
+    sender_.reset();
+  }
+}
+
+/// Writes the prepared message, if there is one and none is being written.
+void Connection::start_write() {
+  if (!has_prepared_ || writing_ || ended_) return;
+  request_.Swap(&prepared_);
+  has_prepared_ = false;
+  if (request_.has_plane_chunk()) exchange_.count(request_.plane_chunk().data().size(), 0);
+  writing_ = true;
+  StartWrite(&request_);
+}
+
+/// Ends our side of the stream if everything is written and nothing will follow.
+void Connection::end_writes() {
+  if (writing_ || has_prepared_ || ended_ || writes_done_ || sender_ || !exchange_.all_sent())
+    return;
+  writes_done_ = true;
+  StartWritesDone();
+}
+
+/// The encoding thread.
+void Connection::encode() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [this] { return ended_ || (woken_ && welcome_ && !has_prepared_); });
+    if (ended_) return;
+    woken_ = false;
+    has_prepared_ = next_message(prepared_, &lock);
+    if (has_prepared_) woken_ = true;  // for the message after it
+    start_write();
+    end_writes();
+  }
 }
 
 }  // namespace holdfast::client

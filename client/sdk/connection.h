@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <thread>
 
 #include <grpcpp/client_context.h>
 #include <grpcpp/support/client_callback.h>
@@ -20,12 +21,18 @@ namespace holdfast::client {
 /// lost. Reactions of gRPC and calls of the owner run on different threads; one mutex guards
 /// everything, taken before that of the exchange. A read is always under way until the stream ends,
 /// and a hold keeps the stream valid for writes from other threads until then.
+///
+/// Planes are encoded on a thread of the connection, one message ahead of the one being written, so
+/// that neither gRPC nor the user's thread waits for a codec. Profile `exact`, which only copies,
+/// needs none: its messages are made where they are written. Results are decoded where they come
+/// in: that is several times cheaper.
 class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse> {
  public:
   /// What the stream has to know about its session.
   struct Config {
     std::vector<PlaneId> planes, results;
     int width = 0, height = 0;
+    const wire::WireProfile* wire = &wire::exact_profile();
     bool fresh = false;  ///< the session was made for this stream
   };
 
@@ -52,13 +59,19 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   // All of these are called with the mutex held.
   void handle_response();
   void write_on();
+  bool next_message(v1::DenoiseRequest& message, std::unique_lock<std::mutex>* lock);
+  void start_write();
+  void end_writes();
+
+  void encode();
 
   Exchange& exchange_;
   const Config config_;
   grpc::ClientContext context_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  std::optional<FrameSender> sender_;
+  PlaneWriter writer_;                 ///< of the sender
+  std::optional<FrameSender> sender_;  ///< of the encoding thread, if there is one
   ResultAssembler assembler_;
   v1::DenoiseRequest request_;
   v1::DenoiseResponse response_;
@@ -66,6 +79,13 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   bool ended_ = false;                  ///< no more reads or writes may be started
   std::optional<grpc::Status> status_;  ///< after OnDone
   std::string violation_;               ///< how the server broke the protocol
+
+  // Of the encoding thread.
+  std::condition_variable wake_;
+  v1::DenoiseRequest prepared_;
+  bool has_prepared_ = false;
+  bool woken_ = false;  ///< there may be something to encode
+  std::thread encoder_;
 };
 
 }  // namespace holdfast::client

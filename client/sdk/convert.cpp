@@ -67,7 +67,7 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
 }
 
 void write_frame_begin(const OutgoingFrame& out, const std::vector<PlaneId>& planes,
-                       v1::FrameBegin& begin) {
+                       std::span<const wire::PlaneCoding> codings, v1::FrameBegin& begin) {
   const Frame& frame = *out.frame;
   begin.set_epoch(out.epoch);
   begin.set_index(frame.index);
@@ -85,6 +85,9 @@ void write_frame_begin(const OutgoingFrame& out, const std::vector<PlaneId>& pla
     announced.set_plane(static_cast<std::uint32_t>(i));
     announced.set_width_px(static_cast<std::uint32_t>(plane.width()));
     announced.set_height_px(static_cast<std::uint32_t>(plane.height()));
+    announced.set_format(
+        static_cast<v1::PlaneFormat>(wire::format_number(codings[i].format, plane.id().kind)));
+    announced.set_codec(static_cast<v1::PlaneCodec>(codings[i].codec));
   }
 }
 

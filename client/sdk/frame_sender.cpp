@@ -1,9 +1,6 @@
 #include "client/sdk/frame_sender.h"
 
-#include <algorithm>
-
 #include "client/sdk/convert.h"
-#include "proto/plane_bytes.h"
 
 namespace holdfast::client {
 
@@ -11,8 +8,10 @@ bool FrameSender::next(v1::DenoiseRequest& request) {
   if (ended_) return false;
   if (!begun_) {
     begun_ = true;
+    for (const PlaneId id : planes_)
+      codings_.push_back(wire::fitting_coding(out_.frame->planes.at(id), writer_.profile->input));
     request.Clear();
-    write_frame_begin(out_, planes_, *request.mutable_frame_begin());
+    write_frame_begin(out_, planes_, codings_, *request.mutable_frame_begin());
     return true;
   }
   if (plane_ == planes_.size()) {
@@ -21,15 +20,14 @@ bool FrameSender::next(v1::DenoiseRequest& request) {
     return true;
   }
   const Plane& plane = out_.frame->planes.at(planes_[plane_]);
-  const std::size_t size = wire::plane_bytes(plane);
-  const std::size_t bytes = std::min(wire::kMaxChunkBytes, size - offset_);
+  const wire::PlaneCoding coding = codings_[plane_];
   v1::PlaneChunk& chunk = *request.mutable_plane_chunk();  // keeps the buffer of the chunk before
   chunk.set_plane(static_cast<std::uint32_t>(plane_));
   chunk.set_offset(offset_);
-  chunk.mutable_data()->resize(bytes);
-  wire::read_plane_bytes(plane, offset_, bytes, chunk.mutable_data()->data());
+  const std::size_t bytes = writer_.coder.encode(plane, coding, offset_, *chunk.mutable_data());
+  chunk.set_plain_bytes(coding.codec == wire::Codec::kNone ? 0 : static_cast<std::uint32_t>(bytes));
   offset_ += bytes;
-  chunk.set_last(offset_ == size);
+  chunk.set_last(offset_ == wire::plane_bytes(plane, coding.format));
   if (chunk.last()) {
     offset_ = 0;
     ++plane_;

@@ -6,14 +6,21 @@
 
 #include "client/sdk/exchange.h"
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/wire_profile.h"
 
 namespace holdfast::client {
+
+/// How a session writes its planes, with memory that its frames share.
+struct PlaneWriter {
+  const wire::WireProfile* profile = &wire::exact_profile();
+  wire::PlaneCoder coder;
+};
 
 /// Turns one frame into messages: FrameBegin, the chunks of each plane, FrameEnd.
 class FrameSender {
  public:
-  FrameSender(OutgoingFrame frame, const std::vector<PlaneId>& planes)
-      : out_(std::move(frame)), planes_(planes) {}
+  FrameSender(OutgoingFrame frame, const std::vector<PlaneId>& planes, PlaneWriter& writer)
+      : out_(std::move(frame)), planes_(planes), writer_(writer) {}
 
   /// Writes the next message to `request`; false if there is none left.
   bool next(v1::DenoiseRequest& request);
@@ -21,6 +28,8 @@ class FrameSender {
  private:
   const OutgoingFrame out_;
   const std::vector<PlaneId>& planes_;
+  PlaneWriter& writer_;
+  std::vector<wire::PlaneCoding> codings_;  ///< of planes_
   bool begun_ = false, ended_ = false;
   std::size_t plane_ = 0, offset_ = 0;
 };

@@ -1,7 +1,6 @@
 #include "client/sdk/result_assembler.h"
 
 #include "client/sdk/convert.h"
-#include "proto/plane_bytes.h"
 
 namespace holdfast::client {
 namespace {
@@ -22,7 +21,15 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
   require(result.planes_size() == static_cast<int>(results_.size()),
           "an answer must announce all result planes");
   output_->planes = std::move(reuse);
-  for (const PlaneId id : results_) {
+  codings_.clear();
+  for (std::size_t i = 0; i < results_.size(); ++i) {
+    const PlaneId id = results_[i];
+    const v1::FramePlane& announced = result.planes(static_cast<int>(i));
+    require(announced.plane() == i, "result planes must be announced in their order");
+    const auto format = wire::format_from_number(announced.format(), id.kind);
+    const auto codec = wire::codec_from_number(announced.codec());
+    require(format && codec, "a result plane must have a known codec and a format that suits it");
+    codings_.push_back({*format, *codec});
     const PlaneSize size = plane_size(id, width_, height_);
     output_->planes.add(id, size.width, size.height);
   }
@@ -34,11 +41,15 @@ bool ResultAssembler::add(const v1::PlaneChunk& chunk) {
   require(chunk.plane() == plane_ && chunk.offset() == received_,
           "chunks must come in the order of the planes, without gaps");
   Plane& plane = *output_->planes.find(results_[plane_]);
-  const std::uint64_t size = wire::plane_bytes(plane);
-  const std::uint64_t bytes = chunk.data().size();
-  require(bytes > 0 && bytes % 4 == 0 && bytes <= size - received_,
+  const wire::PlaneCoding coding = codings_[plane_];
+  const bool coded = coding.codec != wire::Codec::kNone;
+  const std::uint64_t size = wire::plane_bytes(plane, coding.format);
+  const std::uint64_t bytes = coded ? chunk.plain_bytes() : chunk.data().size();
+  require(bytes > 0 && bytes % wire::element_bytes(coding.format) == 0 &&
+              bytes <= wire::kMaxChunkBytes && bytes <= size - received_,
           "a chunk must lie within its plane");
-  wire::write_plane_bytes(plane, received_, bytes, chunk.data().data());
+  require(coder_.decode(plane, coding, received_, bytes, chunk.data()),
+          "a chunk must be what its codec makes");
   received_ += bytes;
   require(chunk.last() == (received_ == size), "the last chunk must end its plane");
   if (received_ < size) return false;

@@ -6,6 +6,7 @@
 #include <holdfast/client.h>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/plane_coder.h"
 
 namespace holdfast::client {
 
@@ -27,9 +28,11 @@ class ResultAssembler {
  private:
   const std::vector<PlaneId> results_;
   const int width_, height_;
+  wire::PlaneCoder coder_;
+  std::vector<wire::PlaneCoding> codings_;  ///< of results_
   std::optional<FrameOutput> output_;
   std::size_t plane_ = 0;
-  std::uint64_t received_ = 0;  ///< bytes of plane_
+  std::uint64_t received_ = 0;  ///< bytes of plane_, before the codec
 };
 
 }  // namespace holdfast::client

@@ -25,10 +25,20 @@ bool passing(const grpc::Status& status) {
          status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
 }
 
+const wire::WireProfile& profile_of(const std::string& name) {
+  const wire::WireProfile* const profile = wire::find_profile(name.empty() ? "exact" : name);
+  if (profile != nullptr) return *profile;
+  std::string names;
+  for (const std::string& known : wire::profile_names())
+    names += (names.empty() ? "" : ", ") + known;
+  throw InputError("wire", "must be one of " + names, "\"" + name + "\"");
+}
+
 }  // namespace
 
 SessionKeeper::SessionKeeper(const SessionOptions& options, Exchange& exchange)
     : options_(options),
+      wire_(profile_of(options.wire)),
       exchange_(exchange),
       channel_(make_channel(options)),
       sessions_(channel_),
@@ -90,7 +100,8 @@ grpc::Status SessionKeeper::open(bool fresh, milliseconds timeout) {
   }
   auto connection = std::make_unique<Connection>(
       denoise_, exchange_,
-      Connection::Config{options_.planes, results_, options_.width, options_.height, fresh}, hello);
+      Connection::Config{options_.planes, results_, options_.width, options_.height, &wire_, fresh},
+      hello);
   const grpc::Status status = connection->wait_open(timeout);
   if (!status.ok()) return status;
   const std::lock_guard lock(mutex_);

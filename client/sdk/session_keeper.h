@@ -47,6 +47,7 @@ class SessionKeeper {
   void remove();
 
   const SessionOptions options_;
+  const wire::WireProfile& wire_;
   Exchange& exchange_;
   const std::shared_ptr<grpc::Channel> channel_;
   v1::SessionService::Stub sessions_;

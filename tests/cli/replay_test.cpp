@@ -95,6 +95,22 @@ TEST_F(Replay, WritesItsResultAsJsonWithTheKeysOfTheFormat) {
   EXPECT_EQ(json.size(), 11u);
 }
 
+TEST_F(Replay, CountsTheBytesThatCrossTheWireUnderEveryProfile) {
+  const auto bytes = [&](const std::string& wire) {
+    EXPECT_EQ(replay({"--json", (dir / "result.json").string(), "--wire", wire}), 0) << text;
+    const auto json = nlohmann::json::parse(test::file_text(dir / "result.json"));
+    return std::pair(json["bytes_in"].get<int>(), json["bytes_out"].get<int>());
+  };
+  const auto exact = bytes("exact");
+  expect_results(3, 6);
+  const auto balanced = bytes("balanced"), compact = bytes("compact");
+  EXPECT_EQ(exact.first, 4 * config.width * config.height * 4 * 9);
+  EXPECT_LT(balanced.first, exact.first / 2);
+  EXPECT_LT(compact.first, balanced.first);
+  EXPECT_LT(balanced.second, exact.second);
+  EXPECT_LT(compact.second, balanced.second);
+}
+
 TEST_F(Replay, WritesOnlyTheFramesAndLayersAskedFor) {
   ASSERT_EQ(replay({"--frames", "4-5", "--layers", "light0.visibility"}), 0) << text;
   EXPECT_FALSE(fs::exists(sequence_file(dir / "out", "frame", 3)));
@@ -164,7 +180,7 @@ TEST_F(Replay, EndsWithTwoAndNamesAWrongArgument) {
   EXPECT_EQ(replay({"--half-resolution", "indirect,shadow"}), 2);
   EXPECT_TRUE(said("half resolution must be of indirect, glossy or none")) << text;
   EXPECT_EQ(replay({"--wire", "zip"}), 2);
-  EXPECT_TRUE(said("wire must be one of exact, but it is \"zip\"")) << text;
+  EXPECT_TRUE(said("wire must be one of exact, balanced, compact, but it is \"zip\"")) << text;
   EXPECT_EQ(replay({"--layers", "depth"}), 2);
   EXPECT_TRUE(said("result plane must be one of composite")) << text;
   EXPECT_EQ(replay({"--layers", "nothing"}), 2);

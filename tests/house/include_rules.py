@@ -1,7 +1,8 @@
 """Who may include what.
 
     core      the standard library, GLM, oneTBB and core/; between its folders, CORE_LAYERS
-    proto     of the project, only core/frame/ and itself: both ends of the wire share it
+    proto     of the project, only core/frame/, what compiles kernels, and itself: both ends of the
+              wire share it
     server    never client/
     client    never server/, but for the one file that embeds a server in the command line
     all       files of the project by their path from its top, in quotes; only tests include tests/
@@ -24,6 +25,8 @@ CORE_LAYERS = {
 }
 
 CORE_LIBRARIES = ("glm/", "tbb/", "oneapi/tbb/")
+
+PROTO_KNOWS = ("proto/", "core/frame/", "core/kernels/variants.h", "core/kernels/math.h")
 
 STANDARD_HEADERS = set(
     """
@@ -79,8 +82,8 @@ def _messages(tree, path, what):
         messages.append(f"{included}: only tests include tests")
     if path.startswith("core/"):
         messages += _core_messages(path, included, quoted)
-    if path.startswith("proto/") and quoted and not included.startswith(("proto/", "core/frame/")):
-        messages.append(f"{included}: proto includes of ours only core/frame/")
+    if path.startswith("proto/") and quoted and not included.startswith(PROTO_KNOWS):
+        messages.append(f"{included}: proto includes of ours only core/frame/ and kernels' macros")
     if path.startswith("server/") and included.startswith("client/"):
         messages.append(f"{included}: the server never includes the client")
     if path.startswith("client/") and included.startswith("server/"):

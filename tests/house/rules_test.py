@@ -77,9 +77,13 @@ class Includes(RulesTest):
 
     def test_proto_knows_the_frame_and_nothing_else_of_ours(self):
         self.write("core/frame/plane.h")
+        self.write("core/kernels/variants.h")
+        self.write("core/kernels/parallel.h")
         self.write("core/denoiser/denoiser.h")
         self.write("server/session.h")
         self.allowed("proto/bytes.h", '#include "core/frame/plane.h"')
+        self.allowed("proto/rows.cpp", '#include "core/kernels/variants.h"')
+        self.refused("proto/rows.cpp", '#include "core/kernels/parallel.h"', "only core/frame/")
         self.refused("proto/bytes.h", '#include "core/denoiser/denoiser.h"', "only core/frame/")
         self.refused("proto/bytes.h", '#include "server/session.h"', "only core/frame/")
         self.refused("core/frame/a.h", '#include "proto/bytes.h"', "but core/")

@@ -17,7 +17,8 @@ class FrameAssembly : public ::testing::Test {
   FrameAssembly() {
     config.denoiser = test::small_config(kWidth, kHeight);
     frame = std::make_shared<const Frame>(test::small_frame(config.denoiser, 4));
-    client::FrameSender sender({frame, 0, {}, {}}, config.denoiser.planes);
+    client::PlaneWriter writer;
+    client::FrameSender sender({frame, 0, {}, {}}, config.denoiser.planes, writer);
     v1::DenoiseRequest message;
     while (sender.next(message)) messages.push_back(message);
   }

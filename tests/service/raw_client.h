@@ -94,10 +94,11 @@ class RawStream {
   }
   grpc::Status finish() { return stream_->Finish(); }
 
-  static std::vector<v1::DenoiseRequest> messages(const Frame& frame,
-                                                  const DenoiserConfig& config) {
+  static std::vector<v1::DenoiseRequest> messages(const Frame& frame, const DenoiserConfig& config,
+                                                  const char* wire = "exact") {
     std::vector<v1::DenoiseRequest> out;
-    client::FrameSender sender({{&frame, [](const Frame*) {}}, 0, {}, {}}, config.planes);
+    client::PlaneWriter writer{wire::find_profile(wire), {}};
+    client::FrameSender sender({{&frame, [](const Frame*) {}}, 0, {}, {}}, config.planes, writer);
     v1::DenoiseRequest message;
     while (sender.next(message)) out.push_back(message);
     return out;

@@ -46,8 +46,11 @@ inline std::vector<PlaneSet> direct(const DenoiserConfig& config,
 
 /// The same through a server, as fast as credits allow.
 inline std::vector<PlaneSet> served(const server::Server& server, const DenoiserConfig& config,
-                                    const std::vector<Frame>& frames) {
-  client::Session session(session_options(server, config));
+                                    const std::vector<Frame>& frames,
+                                    const std::string& wire = "exact") {
+  client::SessionOptions options = session_options(server, config);
+  options.wire = wire;
+  client::Session session(options);
   std::thread submitter([&] {
     for (const Frame& frame : frames)  // not owned: the frames outlive the session
       session.submit(std::shared_ptr<const Frame>(std::shared_ptr<void>(), &frame));

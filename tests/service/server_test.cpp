@@ -99,7 +99,9 @@ TEST(Server, SaysWhatItCanDo) {
   grpc::ClientContext context;
   ASSERT_TRUE(client.sessions->GetServerInfo(&context, {}, &info).ok());
   EXPECT_EQ(info.recipes_size(), static_cast<int>(recipe_names().size()));
+  ASSERT_EQ(info.wires_size(), 3);
   EXPECT_EQ(info.wires(0), "exact");
+  EXPECT_EQ(info.wires(2), "compact");
   EXPECT_EQ(info.threads(), 1u);
   EXPECT_EQ(info.max_chunk_bytes(), 1u << 20);
 }

@@ -194,7 +194,7 @@ TEST(ClientSession, NamesTheOptionThatTheServerRefuses) {
   EXPECT_EQ(message([](SessionOptions& o) { o.width = 0; }),
             "width must be in 1..16384, but it is 0");
   EXPECT_EQ(message([](SessionOptions& o) { o.wire = "zip"; }),
-            "wire must be one of exact, but it is \"zip\"");
+            "wire must be one of exact, balanced, compact, but it is \"zip\"");
   EXPECT_NE(message([](SessionOptions& o) { o.recipe = "magic"; }).find("spatial, traditional"),
             std::string::npos);
   EXPECT_NE(message([](SessionOptions& o) { o.preset = "x"; }).find("must be one of"),

@@ -201,9 +201,10 @@ TEST_F(DenoiseCall, AnswersABadFrameInTurnAndLeavesTheHistoryAsItWas) {
     direct.filter(test::small_frame(config, i), expected);
     const Plane& composite = expected.at({PlaneKind::kComposite, {}});
     const std::string data = stream.read().plane_chunk().data();
-    ASSERT_EQ(data.size(), wire::plane_bytes(composite));
+    ASSERT_EQ(data.size(), wire::plane_bytes(composite, wire::PlaneFormat::kF32));
     std::string wanted(data.size(), '\0');
-    wire::read_plane_bytes(composite, 0, wanted.size(), wanted.data());
+    wire::read_plane_bytes(composite, wire::PlaneFormat::kF32, 0, wanted.size(),
+                           reinterpret_cast<std::byte*>(wanted.data()));
     EXPECT_EQ(data, wanted) << "frame " << i;
   }
   EXPECT_EQ(client.get().frames(), 3u);

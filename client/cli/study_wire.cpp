@@ -1,0 +1,222 @@
+#include "client/cli/study_wire.h"
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <optional>
+
+#include <holdfast/client.h>
+
+#include "client/cli/embedded_server.h"
+#include "client/cli/percentiles.h"
+#include "client/cli/progress.h"
+#include "client/measure/judged.h"
+#include "client/measure/layer_meter.h"
+#include "client/sequence/sequence.h"
+#include "proto/wire_profile.h"
+
+namespace holdfast::cli {
+namespace {
+
+using Codings = std::array<wire::PlaneCoding, kPlaneKindCount>;
+
+/// CPU time of this thread, nanoseconds.
+double thread_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
+/// Costs of one direction: encodes and decodes frames as both ends of a stream do.
+class CostMeter {
+ public:
+  explicit CostMeter(const Codings& codings) : codings_(codings) {}
+
+  /// `pixels`: of the frame.
+  void add(const PlaneSet& planes, const std::vector<PlaneId>& ids, double pixels) {
+    double encode = 0, decode = 0;
+    for (const PlaneId id : ids) {
+      const Plane& plane = planes.at(id);
+      WireCost& sum = sums_[id];
+      const double start = thread_ns();
+      const wire::PlaneCoding coding = wire::fitting_coding(plane, codings_);
+      const std::size_t size = wire::plane_bytes(plane, coding.format);
+      const std::size_t count = (size + wire::kMaxChunkBytes - 1) / wire::kMaxChunkBytes;
+      if (blocks_.size() < count) blocks_.resize(count);
+      for (std::size_t i = 0; i < count; ++i)
+        coder_.encode(plane, coding, i * wire::kMaxChunkBytes, blocks_[i]);
+      const double middle = thread_ns();
+      Plane& decoded = decoded_.add(id, plane.width(), plane.height());
+      const double restart = thread_ns();  // what `add` allocates is not counted
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t offset = i * wire::kMaxChunkBytes;
+        const std::size_t held = std::min(wire::kMaxChunkBytes, size - offset);
+        if (!coder_.decode(decoded, coding, offset, held, blocks_[i]))
+          throw std::logic_error("a block cannot be decoded");
+        sum.coded_bytes += static_cast<double>(blocks_[i].size());
+      }
+      const double decode_ns = thread_ns() - restart;
+      sum.encode_ns += middle - start;
+      sum.decode_ns += decode_ns;
+      encode += middle - start;
+      decode += decode_ns;
+      sum.plain_bytes += static_cast<double>(size);
+    }
+    pixels_ += pixels;
+    encode_ns_.push_back(encode / pixels);
+    decode_ns_.push_back(decode / pixels);
+  }
+
+  std::map<PlaneId, WireCost> planes() const {
+    auto out = sums_;
+    for (auto& [id, cost] : out) {
+      cost.plain_bytes /= pixels_;
+      cost.coded_bytes /= pixels_;
+      cost.encode_ns /= pixels_;
+      cost.decode_ns /= pixels_;
+    }
+    return out;
+  }
+
+  WireCost total() const {
+    WireCost out{0, 0, percentile(encode_ns_, 0.5), percentile(decode_ns_, 0.5)};
+    for (const auto& [id, cost] : planes()) {
+      out.plain_bytes += cost.plain_bytes;
+      out.coded_bytes += cost.coded_bytes;
+    }
+    return out;
+  }
+
+ private:
+  const Codings& codings_;
+  wire::PlaneCoder coder_;
+  std::vector<std::string> blocks_;
+  PlaneSet decoded_;
+  std::map<PlaneId, WireCost> sums_;
+  std::vector<double> encode_ns_, decode_ns_;
+  double pixels_ = 0;
+};
+
+/// Mean squared difference of judged values over surface pixels.
+class ErrorMeter {
+ public:
+  void add(const Plane& a, const Plane& b, const measure::Mask& surface) {
+    const auto measure = measure::measure_of(a.id().kind);
+    const auto judged = [&](const Plane& plane) {
+      return measure::judged_image(measure::clean_image(plane).image, measure);
+    };
+    const auto squared = measure::squared_difference(judged(a), judged(b));
+    for (std::size_t i = 0; i < surface.size(); ++i)
+      if (surface[i]) {
+        sum_ += squared[i];
+        count_ += a.channels();
+      }
+  }
+  double rmse() const {
+    return count_ > 0 ? std::sqrt(sum_ / count_) : std::numeric_limits<double>::quiet_NaN();
+  }
+
+ private:
+  double sum_ = 0, count_ = 0;
+};
+
+/// One sequence under one profile after the other.
+class SequenceStudy {
+ public:
+  SequenceStudy(const std::filesystem::path& dir, const WireStudyOptions& options,
+                const std::string& address, Progress& progress)
+      : sequence_(dir), options_(options), address_(address), progress_(progress) {}
+
+  WireFigures run(const wire::WireProfile& profile, std::int64_t& done) {
+    const auto indices = sequence_.frame_indices();
+    client::Session session(session_options(profile));
+    CostMeter up(profile.input), down(profile.result);
+    struct Errors {
+      ErrorMeter exact, reference;
+    };
+    std::map<PlaneId, Errors> errors;
+    const bool first = exact_.empty();
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      const auto frame = std::make_shared<const Frame>(sequence_.read_frame(indices[i]));
+      PlaneSet answered = answer(session, frame);
+      if (first) exact_.push_back(std::move(answered));
+      const PlaneSet& results = first ? exact_.back() : answered;
+      const Plane& depth = frame->planes.at({PlaneKind::kDepth, {}});
+      const double pixels = static_cast<double>(depth.width()) * depth.height();
+      up.add(frame->planes, sequence_.planes(), pixels);
+      down.add(exact_[i], session.results(),
+               pixels);  // before any rounding, as the server has them
+      const measure::Mask surface = measure::surface_mask(depth);
+      const PlaneSet references =
+          sequence_.has_reference(indices[i]) ? sequence_.read_reference(indices[i]) : PlaneSet();
+      for (const PlaneId id : session.results()) {
+        errors[id].exact.add(results.at(id), exact_[i].at(id), surface);
+        if (const Plane* reference = references.find(id))
+          errors[id].reference.add(results.at(id), *reference, surface);
+      }
+      progress_.update(++done);
+    }
+    session.close();
+    WireFigures out{sequence_.dir().string(),
+                    std::string(profile.name),
+                    up.total(),
+                    down.total(),
+                    up.planes(),
+                    down.planes(),
+                    {}};
+    for (const auto& [id, error] : errors) {
+      const double rmse = error.exact.rmse();
+      out.layers[id] = {-20 * std::log10(rmse), rmse, error.reference.rmse()};
+    }
+    return out;
+  }
+
+ private:
+  client::SessionOptions session_options(const wire::WireProfile& profile) const {
+    client::SessionOptions out;
+    out.address = address_;
+    out.width = sequence_.header().width;
+    out.height = sequence_.header().height;
+    out.lights = sequence_.header().lights;
+    out.planes = sequence_.planes();
+    out.recipe = options_.recipe;
+    out.preset = options_.preset;
+    out.wire = profile.name;
+    return out;
+  }
+
+  static PlaneSet answer(client::Session& session, const std::shared_ptr<const Frame>& frame) {
+    session.submit(frame);
+    auto output = session.receive();
+    if (!output) throw std::runtime_error("the server gave no answer");
+    if (output->error && output->error->input) throw *output->error->input;
+    if (output->error) throw std::runtime_error(output->error->message);
+    return std::move(output->planes);
+  }
+
+  const SequenceReader sequence_;
+  const WireStudyOptions& options_;
+  const std::string& address_;
+  Progress& progress_;
+  std::vector<PlaneSet> exact_;  ///< results of the first profile, by frame
+};
+
+}  // namespace
+
+std::vector<WireFigures> study_wire(const WireStudyOptions& options) {
+  const EmbeddedServer server(0);
+  const auto& names = wire::profile_names();
+  std::int64_t total = 0, done = 0;
+  for (const auto& dir : options.sequences)
+    total += static_cast<std::int64_t>(SequenceReader(dir).frame_indices().size() * names.size());
+  Progress progress("wire", total, options.quiet);
+  std::vector<WireFigures> figures;
+  for (const auto& dir : options.sequences) {
+    SequenceStudy study(dir, options, server.address(), progress);
+    for (const std::string& name : names)
+      figures.push_back(study.run(*wire::find_profile(name), done));
+  }
+  return figures;
+}
+
+}  // namespace holdfast::cli

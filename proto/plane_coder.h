@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/frame/plane.h"
+#include "proto/codec.h"
+#include "proto/plane_bytes.h"
+
+namespace holdfast::wire {
+
+/// How a plane is written.
+struct PlaneCoding {
+  PlaneFormat format = PlaneFormat::kF32;
+  Codec codec = Codec::kNone;
+  friend bool operator==(const PlaneCoding&, const PlaneCoding&) = default;
+};
+
+/// The coding that loses nothing and compresses nothing.
+inline PlaneCoding full_coding(PlaneKind kind) { return {full_format(kind), Codec::kNone}; }
+
+/// A coding by its numbers in the protocol. Throws InputError naming `plane`, what its format or
+/// codec may be, and the number, if it is none that suits the plane.
+PlaneCoding coding_from_numbers(PlaneId plane, int format, int codec);
+
+/// Planes to and from the blocks that chunks carry: kMaxChunkBytes of a plane's bytes each, the
+/// last one less; for a codec predicted from the row above (predicted_bytes.h), then compressed,
+/// each by itself. Keeps its memory, two blocks at most. One thread at a time.
+class PlaneCoder {
+ public:
+  /// Makes `data` the block of the plane that begins at `offset` of its bytes, with room for its
+  /// plain bytes. Returns how many bytes of the plane it holds.
+  std::size_t encode(const Plane& plane, PlaneCoding coding, std::size_t offset, std::string& data);
+
+  /// Writes the block `data`, which holds `bytes` bytes of the plane at `offset`, to the plane:
+  /// both as in write_plane_bytes, `bytes` at most kMaxChunkBytes (asserted). False, with the plane
+  /// unchanged, if `data` is neither a block of the codec that holds so many bytes nor these bytes
+  /// themselves.
+  bool decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
+              std::string_view data);
+
+ private:
+  std::byte* plain(std::size_t bytes);
+
+  BlockCodec codec_;
+  std::vector<std::byte> plain_;
+};
+
+}  // namespace holdfast::wire
