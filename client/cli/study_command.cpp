@@ -24,8 +24,8 @@ struct Arguments {
   QualitySettings quality;
   StudyOptions study;
   std::string size, json, markdown, svg;
-  bool with_quality = false, with_trade = false, with_vectors = false, with_stability = false, with_oracle = false,
-       quick = false;
+  bool with_quality = false, with_trade = false, with_vectors = false, with_stability = false,
+       with_oracle = false, quick = false;
   bool with_long = false, with_large = false;
   WireStudyOptions wire;
 
@@ -170,10 +170,10 @@ void add_study(CLI::App& app) {
   QualitySettings& quality = arguments->quality;
   StudyOptions& study = arguments->study;
   study.recipes = recipe_names();
-  CLI::App& command = *app.add_subcommand(
-      "study",
-      "Measure recipes, presets, motion vectors, stability, rounding or wire profiles: figures, claims, "
-      "pictures");
+  CLI::App& command = *app.add_subcommand("study",
+                                          "Measure recipes, presets, motion vectors, stability, "
+                                          "rounding or wire profiles: figures, claims, "
+                                          "pictures");
   CLI::App& subject = *command.add_option_group("subject")->require_option(1);
   subject.add_flag("--quality", arguments->with_quality,
                    "All recipes on all scenes: errors, and whether the claims hold");

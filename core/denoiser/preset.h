@@ -18,7 +18,7 @@ struct Preset {
   bool half_indirect = false;  ///< indirect light is filtered at half resolution
   bool half_glossy = false;    ///< reflections likewise
   bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow
-  int more_levels = 0;         ///< of the a-trous filter of radiance, beside the recipe's
+  int more_levels = 0;  ///< of the a-trous filter of radiance, beside the recipe's
 };
 
 /// All presets, fastest first; `reference` last, which is no choice of quality but what the others
