@@ -48,8 +48,8 @@ struct RadianceBlendScratch {
 /// Blends RGB radiance with the candidate history of least expected error. For a candidate h with n
 /// samples, d = mean(h - noisy) by channel over a window of m samples, and variance
 /// v' = mean |h - noisy|^2 - |d|^2 of one difference (summed over channels, so that changes of hue
-/// count; at least that of 1e-5 of h, below which differences are rounding), v = v' n / (n + 1) that
-/// of one sample:
+/// count; at least that of 1e-5 of h, below which differences are rounding), v = v' n / (n + 1)
+/// that of one sample:
 ///   u   = v' / m                                  variance of d
 ///   r   = recursive mean of d along the history, w its variance
 ///   b^2 = the larger of max(0, |d|^2 - sudden_threshold u) and max(0, |r|^2 - noise_threshold w)
