@@ -80,7 +80,7 @@ const OracleBudget& oracle_budget(PlaneKind kind) {
   static const OracleBudget visibility{"visibility", 1e-3, 1e-3, 3e-5};
   // The same, the variances above, which say how far edges are seen (`svgf`, whose moments cancel),
   // and for `paper` another draw's place on the taps.
-  static const OracleBudget radiance{"radiance", 3e-3, 1e-3, 4e-5};
+  static const OracleBudget radiance{"radiance", 3e-3, 1e-3, 1e-4};
   // A sum of all of these, each times its factor below 1.
   static const OracleBudget composite{"composite", 1e-3, 1e-3, 2e-5};
   switch (kind) {

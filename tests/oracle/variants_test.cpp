@@ -40,7 +40,7 @@ TEST(Variants, EveryInstructionSetAndNumberOfThreadsAgreesWithTheOracle) {
   }
 }
 
-TEST(Variants, ErrorsDoNotGrowFromFrameToFrame) {
+TEST(Variants, ErrorsStayWithinTheBudgetOverManyFrames) {
   OracleScene scene = moving_scene(48, 32, 24);
   for (const char* recipe : {"reliable", "svgf"}) {
     SCOPED_TRACE(recipe);
