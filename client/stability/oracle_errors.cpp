@@ -73,14 +73,14 @@ const OracleBudget& oracle_budget(PlaneKind kind) {
   // reflected: their values are the same, too.
   static const OracleBudget vectors{"vectors", 1e-2, 2e-2, 5e-4};
   // Samples and weights follow from variances, which are differences of means: of what is nearly
-  // constant little is left but rounding. Least where a visibility's floor of 1e-3 stands below.
-  static const OracleBudget history{"history", 2e-2, 1e-3, 2e-4};
-  static const OracleBudget confidence{"confidence", 2e-2, 1e-3, 2e-4};
+  // constant, such as the reflection of the sky, little is left but rounding.
+  static const OracleBudget history{"history", 2e-2, 1e-3, 6e-4};
+  static const OracleBudget confidence{"confidence", 2e-2, 1e-3, 6e-4};
   // exp_nonpositive is off by 6e-6, and so are weights; means of 0 and 1 by less.
   static const OracleBudget visibility{"visibility", 1e-3, 1e-3, 3e-5};
   // The same, the variances above, which say how far edges are seen (`svgf`, whose moments cancel),
   // and for `paper` another draw's place on the taps.
-  static const OracleBudget radiance{"radiance", 3e-3, 1e-3, 4e-5};
+  static const OracleBudget radiance{"radiance", 3e-3, 1e-3, 1e-4};
   // A sum of all of these, each times its factor below 1.
   static const OracleBudget composite{"composite", 1e-3, 1e-3, 2e-5};
   switch (kind) {

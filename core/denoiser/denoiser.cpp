@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
-#include <optional>
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
+#include "core/denoiser/frame_filter.h"
 #include "core/denoiser/frame_input.h"
 #include "core/denoiser/half_frame.h"
 #include "core/denoiser/light_shading.h"
@@ -18,7 +18,6 @@
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
-#include "core/oracle/frame_oracle.h"
 
 namespace holdfast {
 namespace {
@@ -49,7 +48,7 @@ class Denoiser::Impl {
                 c.debug_planes) {
     announced = result_planes(c);
     if (plan.preset.oracle) {
-      oracle.emplace(config, plan);
+      oracle = make_oracle(config, plan);
       return;
     }
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
@@ -252,8 +251,8 @@ class Denoiser::Impl {
   int now = 0;  ///< index of the current frame's guides
   SurfaceHistory surface;
   HalfFrame half;
-  std::optional<oracle::FrameOracle> oracle;  ///< in place of all that, with preset `reference`
-  ConeSamples cone_samples{};                 ///< of the component at hand
+  std::unique_ptr<FrameFilter> oracle;  ///< in place of all that, with preset `reference`
+  ConeSamples cone_samples{};           ///< of the component at hand
   SceneMotion scene;
   PlaneSet shaded;  ///< unshadowed light of `plan.shaded_lights`
   std::vector<ComponentFilter> filters;

@@ -139,3 +139,11 @@ std::size_t FrameOracle::bytes() const {
 }
 
 }  // namespace holdfast::oracle
+
+namespace holdfast {
+
+std::unique_ptr<FrameFilter> make_oracle(const DenoiserConfig& config, const Plan& plan) {
+  return std::make_unique<oracle::FrameOracle>(config, plan);
+}
+
+}  // namespace holdfast

@@ -2,27 +2,22 @@
 
 #include <vector>
 
-#include "core/denoiser/plan.h"
-#include "core/denoiser/stage_timer.h"
+#include "core/denoiser/frame_filter.h"
 #include "core/oracle/component.h"
 
 namespace holdfast::oracle {
 
 /// The whole frame of any recipe, at full resolution; keeps history of its own. What the preset
 /// `reference` runs in place of the kernels.
-class FrameOracle {
+class FrameOracle final : public FrameFilter {
  public:
   /// `config` and `plan` must outlive the oracle. Throws InputError for components at half
   /// resolution, which the oracle does not know.
   FrameOracle(const DenoiserConfig& config, const Plan& plan);
 
-  /// Filters one checked frame into `results`, whose planes are there. `has_past`: history of the
-  /// frame before is to be used. Adds repairs, changes and counts to `report`.
   void filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report,
-              StageTimer& timer);
-
-  /// Held between frames.
-  std::size_t bytes() const;
+              StageTimer& timer) override;
+  std::size_t bytes() const override;
 
  private:
   Surfaces load(const Frame& frame, FrameReport& report) const;

@@ -6,7 +6,7 @@
 namespace holdfast {
 namespace {
 
-constexpr int kSteps = 60;  // of one degree
+constexpr int kSteps = 480;  // of an eighth of a degree: overlaps end like (2r - d)^1.5
 
 std::array<float, kSteps + 1> make_table() {
   std::array<float, kSteps + 1> table{};

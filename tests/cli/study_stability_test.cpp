@@ -30,12 +30,32 @@ TEST_F(StabilityStudy, WritesTheDocumentedKeysAndTheTable) {
   EXPECT_EQ(table.find("8192x4320"), table.npos) << "only with --large";
 }
 
+TEST_F(StabilityStudy, OfTheOracleWritesTheDocumentedKeysAndTheTable) {
+  ASSERT_EQ(holdfast({"study", "--oracle", "--recipes", "spatial", "--json", path("oracle.json"),
+                      "--markdown", path("oracle.md"), "--quiet"}),
+            0)
+      << text;
+  const auto json = nlohmann::json::parse(test::file_text(dir / "oracle.json"));
+  EXPECT_EQ(keys(json), (Names{"entries", "passed"}));
+  EXPECT_EQ(json["passed"], true);
+  ASSERT_EQ(json["entries"].size(), 3u * 13) << "of three scenes, each result and debug plane";
+  for (const auto& entry : json["entries"])
+    EXPECT_EQ(keys(entry), (Names{"largest", "largest_tip", "passed", "plane", "recipe", "rms",
+                                  "scene", "tipped"}));
+  const std::string table = test::file_text(dir / "oracle.md");
+  for (const char* part : {"| recipe | stage | RMS | largest | tipped |", "| budget | vectors |",
+                           "| `spatial` | visibility |", "| `spatial` | composite |"})
+    EXPECT_NE(table.find(part), table.npos) << part;
+}
+
 TEST_F(StabilityStudy, RefusesUnknownRecipesAndOptionsOfOtherStudies) {
   EXPECT_EQ(holdfast({"study", "--stability", "--recipes", "magic"}), 2);
   EXPECT_NE(text.find("recipe must be one of"), text.npos) << text;
   EXPECT_EQ(holdfast({"study", "--stability", "--frames", "8"}), 2);
   EXPECT_EQ(holdfast({"study", "--stability", "--vectors"}), 2);
   EXPECT_EQ(holdfast({"study", "--vectors", "--long"}), 2);
+  EXPECT_EQ(holdfast({"study", "--oracle", "--long"}), 2);
+  EXPECT_EQ(holdfast({"study", "--oracle", "--recipes", "magic"}), 2);
 }
 
 }  // namespace

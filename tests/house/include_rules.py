@@ -11,7 +11,7 @@
 import re
 
 # What each folder of core knows besides itself. Lower layers first; only `denoiser` knows all.
-# `oracle` is one of its two ways to filter a frame, and reads what it has decided: recipe and plan.
+# `oracle` stands above it, and is known to it as a FrameFilter.
 CORE_LAYERS = {
     "frame": set(),
     "kernels": {"frame"},
@@ -20,8 +20,8 @@ CORE_LAYERS = {
     "radiance": {"frame", "kernels"},
     "history": {"frame", "kernels", "motion", "radiance", "spatial"},
     "spatial": {"frame", "kernels", "radiance"},
+    "denoiser": {"frame", "kernels", "shading", "motion", "radiance", "history", "spatial"},
     "oracle": {"frame", "kernels", "shading", "motion", "radiance", "history", "spatial", "denoiser"},
-    "denoiser": {"frame", "kernels", "shading", "motion", "radiance", "history", "spatial", "oracle"},
 }
 
 CORE_LIBRARIES = ("glm/", "tbb/", "oneapi/tbb/")

@@ -40,6 +40,16 @@ TEST(Variants, EveryInstructionSetAndNumberOfThreadsAgreesWithTheOracle) {
   }
 }
 
+TEST(Variants, ErrorsStayWithinTheBudgetOverManyFrames) {
+  OracleScene scene = moving_scene(48, 32, 24);
+  for (const char* recipe : {"reliable", "svgf"}) {
+    SCOPED_TRACE(recipe);
+    scene.config.recipe = recipe;
+    test::expect_within_budget(filter_frames(scene.config, "balanced", scene.frames),
+                               filter_frames(scene.config, "reference", scene.frames));
+  }
+}
+
 TEST(Variants, EveryBasisOfIndirectLightAgreesWithTheOracle) {
   OracleScene scene = moving_scene(48, 32, 5);
   for (const char* basis : {"irradiance", "luminance-cones", "cones"}) {
