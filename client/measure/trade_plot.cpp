@@ -104,18 +104,37 @@ struct Label {
   double width() const { return 7.6 * static_cast<double>(text.size()); }
 };
 
-void place(std::vector<Label>& labels, Label label) {
-  const bool left = label.x + label.width() + 10 > kWidth - kRight;
-  label.x += left ? -10 - label.width() : 10;
-  const double at = label.y + 4.5;
-  for (const double shift : {0.0, -15.0, 15.0, -30.0, 30.0, -45.0, 45.0, -60.0, 60.0}) {
-    label.y = at + shift;
-    const bool free = std::none_of(labels.begin(), labels.end(), [&](const Label& other) {
-      return std::abs(label.y - other.y) < 14 && label.x < other.x + other.width() &&
-             other.x < label.x + label.width();
-    });
-    if (free && label.y > kTop - 6 && label.y < kHeight - kBottom - 2) break;
-  }
+/// A named point.
+struct Spot {
+  double x, y;
+};
+
+bool is_free(const Label& label, const std::vector<Label>& labels, const std::vector<Spot>& spots) {
+  constexpr double kLine = 14, kRadius = 8;
+  if (label.x < kLeft || label.x + label.width() > kWidth || label.y < kTop - 6 ||
+      label.y > kHeight - kBottom - 2)
+    return false;
+  const bool over_label = std::any_of(labels.begin(), labels.end(), [&](const Label& other) {
+    return std::abs(label.y - other.y) < kLine && label.x < other.x + other.width() &&
+           other.x < label.x + label.width();
+  });
+  return !over_label && std::none_of(spots.begin(), spots.end(), [&](const Spot& spot) {
+    return spot.x > label.x - kRadius && spot.x < label.x + label.width() + kRadius &&
+           std::abs(spot.y - (label.y - 4.5)) < kRadius + 4;
+  });
+}
+
+/// Puts a label where it is free: beside its point on the right or left, else above or below.
+void place(std::vector<Label>& labels, const std::vector<Spot>& spots, Label label) {
+  const Spot spot{label.x, label.y};
+  for (const double shift : {0.0, -15.0, 15.0, -24.0, 24.0, -39.0, 39.0, -54.0, 54.0})
+    for (const double beside : {10.0, -10 - label.width()}) {
+      label.x = spot.x + beside;
+      label.y = spot.y + 4.5 + shift;
+      if (!is_free(label, labels, spots)) continue;
+      labels.push_back(std::move(label));
+      return;
+    }
   labels.push_back(std::move(label));
 }
 
@@ -160,6 +179,9 @@ std::string trade_svg(const TradeScene& scene, bool relative) {
   const Axes axes = axes_of(scene.points);
   std::vector<std::string> recipes;
   std::vector<Label> labels;
+  std::vector<Spot> spots;
+  for (const TradePoint& point : scene.points)
+    if (!point.presets.empty()) spots.push_back({axes.x(point.ms), axes.y(point.rmse)});
   std::string dots;
   for (const bool named : {false, true})  // what is named lies on top
     for (const TradePoint& point : scene.points) {
@@ -171,8 +193,9 @@ std::string trade_svg(const TradeScene& scene, bool relative) {
       dots += dot(point, axes, colour, named);
       const std::string name = named ? shared_name(scene, point) : "";
       if (!name.empty())
-        place(labels, {axes.x(point.ms), axes.y(point.rmse), name, colour,
-                       point.recipe == scene.points.front().recipe});
+        place(labels, spots,
+              {axes.x(point.ms), axes.y(point.rmse), name, colour,
+               point.recipe == scene.points.front().recipe});
     }
   std::string svg = format(
                         "<svg class=\"trade\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 "

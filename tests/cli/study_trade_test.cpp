@@ -11,8 +11,8 @@ using Names = std::vector<std::string>;
 
 class TradeStudy : public test::ProgramTest {
  protected:
-  int study(Names more = {}) {
-    more.insert(more.begin(), {"study", "--trade", "--size", "48x27", "--frames", "4",
+  int study(Names more, const char* frames = "4") {
+    more.insert(more.begin(), {"study", "--trade", "--size", "48x27", "--frames", frames,
                                "--reference-spp", "4", "--quiet"});
     return holdfast(more);
   }
@@ -50,8 +50,7 @@ TEST_F(TradeStudy, RefusesWhatMeansNothing) {
   EXPECT_EQ(study({"--scenes", "fence"}), 2) << "no folder";
   EXPECT_EQ(study({"-o", path("study"), "--scenes", "fence", "--recipes", "nothing"}), 2);
   EXPECT_EQ(holdfast({"study", "--vectors", "--svg", path("plot.svg")}), 2);
-  EXPECT_EQ(study({"-o", path("study"), "--scenes", "fence", "--frames", "2"}), 2)
-      << "two frames are warm-up";
+  EXPECT_EQ(study({"-o", path("study"), "--scenes", "fence"}, "2"), 2) << "two frames are warm-up";
   EXPECT_NE(text.find("at least 3"), std::string::npos) << text;
 }
 

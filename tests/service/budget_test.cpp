@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
 
 #include "server/calibration.h"
 #include "server/session_table.h"
@@ -50,6 +53,45 @@ TEST(Budget, TheFastestPresetGivesTheBitsOfTheCoreWithThatPreset) {
     denoiser.filter(small_frame(config, index), results);
     EXPECT_TRUE(test::same_bits(results, outputs[static_cast<std::size_t>(index)].planes)) << index;
   }
+}
+
+// On one thread, each frame of the other session is a wait of far more than the budget.
+TEST(Budget, ThePresetFallsUnderTheLoadOfAnotherSessionAndRisesAfterwards) {
+  const server::Server server(server_config(1));
+  DenoiserConfig config = small_config(64, 36);
+  config.preset = "accurate";
+  client::SessionOptions options = test::session_options(server, config);
+  options.budget_ms = 60;
+  client::Session session(options);
+  int index = 0;
+  const auto next_preset = [&] {
+    session.submit(std::make_shared<const Frame>(small_frame(config, index++)));
+    return session.receive()->preset;
+  };
+  /// Whether a frame is filtered with it within a minute.
+  const auto comes_to = [&](const std::string& preset) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (next_preset() != preset)
+      if (std::chrono::steady_clock::now() > end) return false;
+    return true;
+  };
+  EXPECT_TRUE(comes_to("accurate"));
+  std::atomic<bool> busy{true};
+  std::thread other([&] {
+    const DenoiserConfig large = small_config(1280, 720);
+    client::Session load(test::session_options(server, large));
+    for (int i = 0; busy; ++i) {
+      const auto frame = std::make_shared<const Frame>(small_frame(large, i));
+      while (!load.try_submit(frame)) load.receive();
+    }
+    load.close();
+  });
+  EXPECT_TRUE(comes_to("fast"));
+  busy = false;
+  other.join();
+  EXPECT_TRUE(comes_to("balanced")) << "one step at a time";
+  EXPECT_TRUE(comes_to("accurate"));
+  session.close();
 }
 
 TEST(Budget, CalibrationFindsTheFastestPresetTheCheapest) {

@@ -96,7 +96,8 @@ TEST(PresetChooser, WaitingForOtherSessionsCountsForTheBudget) {
       [](int i) { return i >= 100 && i < 500 ? 15.0 : 0.0; });
   EXPECT_EQ(played.presets[99], 2u);
   EXPECT_EQ(played.presets[120], 0u);
-  EXPECT_EQ(played.presets[499], 0u) << "15 + 10 ms would not keep to it";
+  EXPECT_EQ(std::count(played.presets.begin() + 120, played.presets.begin() + 500, 0u), 380)
+      << "15 + 10 ms would not keep to it";
   EXPECT_EQ(played.presets[999], 2u);
 }
 
