@@ -32,6 +32,10 @@ void add_access_options(CLI::App& command, CLI::Option* server, Access& access) 
           ->needs(certificate);
   certificate->needs(key);
   command
+      .add_option("--tls-name", access.tls.server_name,
+                  "name that the server's certificate must have; default: the host of --server")
+      ->needs(ca);
+  command
       .add_option("--token-file", access.token_file,
                   "file whose first line is the bearer token with which the server admits us")
       ->needs(server);

@@ -14,7 +14,8 @@ struct Access {
   std::string token_file;  ///< its first line that is neither empty nor a comment (#) is the token
 };
 
-/// Adds --tls-ca, --tls-cert, --tls-key and --token-file, which go with the option `server`.
+/// Adds --tls-ca, --tls-cert, --tls-key, --tls-name and --token-file, which go with the option
+/// `server`.
 void add_access_options(CLI::App& command, CLI::Option* server, Access& access);
 
 /// Fills in `tls` and `bearer_token`. Throws InputError naming the token file if it cannot be read

@@ -44,7 +44,14 @@ void LoadResult::add(const LoadResult& other) {
   for (const auto& [kind, count] : other.errors) errors[kind] += count;
 }
 
-LoadResult run_load(const LoadOptions& options) {
+LoadResult run_load(const LoadOptions& given) {
+  LoadOptions options = given;
+  // The relay has another address, but the certificate is still that of the server.
+  client::TlsFiles& tls = options.access.tls;
+  if (!options.link.plain() && !tls.ca.empty() && tls.server_name.empty())
+    tls.server_name = options.server.starts_with("unix:")
+                          ? "localhost"
+                          : options.server.substr(0, options.server.rfind(':'));
   std::optional<EmbeddedServer> embedded;
   if (options.server.empty()) embedded.emplace(options.threads);
   std::string address = embedded ? embedded->address() : options.server;

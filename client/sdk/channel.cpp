@@ -80,6 +80,7 @@ std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
     args.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     args.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, wire::kMaxMessageBytes);
   }
+  if (!session.tls.server_name.empty()) args.SetSslTargetNameOverride(session.tls.server_name);
   return grpc::CreateCustomChannel(address, credentials(session.tls), args);
 }
 

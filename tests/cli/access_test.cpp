@@ -43,6 +43,9 @@ TEST_F(Access, LoadAndReplayReachAServerThatAsksForACertificateAndAToken) {
                                         "--token-file",    tokens};
   EXPECT_EQ(load(access), 0) << text;
   EXPECT_NE(text.find("answered 2 of 2"), std::string::npos) << text;
+  std::vector<std::string> far = access;
+  far.insert(far.end(), {"--delay-ms", "5"});
+  EXPECT_EQ(load(far), 0) << "encryption passes through the link: " << text;
   render("fence", {"--frames", "2", "--reference-spp", "0"});
   std::vector<std::string> replay{"replay",  path("in"), "-o",   path("out"),
                                   "--quiet", "--server", address};

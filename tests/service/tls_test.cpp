@@ -73,6 +73,14 @@ TEST_F(Tls, AsksForTheCertificateOfAClientWhereToldTo) {
   EXPECT_TRUE(connects());
 }
 
+TEST_F(Tls, ChecksTheNameThatItIsGivenInsteadOfThatOfTheAddress) {
+  start();  // at 127.0.0.1, with a certificate for that and for localhost
+  options.tls.server_name = "localhost";
+  EXPECT_TRUE(connects());
+  options.tls.server_name = "render.example";
+  EXPECT_FALSE(connects());
+}
+
 TEST_F(Tls, NamesAFileThatIsNotThere) {
   start();
   options.tls.ca = "/nowhere/ca.pem";

@@ -30,6 +30,9 @@ struct TlsFiles {
   std::string ca;  ///< authorities that the server's certificate must come from; empty = no TLS
   std::string certificate;  ///< our own, if the server asks for one
   std::string key;          ///< of that
+  /// Name that the server's certificate must have; empty = the host of the address. For servers
+  /// behind a tunnel or a relay.
+  std::string server_name;
 };
 
 /// What a server does with a frame that waits to be filtered when a newer one has come.
