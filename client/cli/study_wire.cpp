@@ -139,8 +139,7 @@ class SequenceStudy {
     for (std::size_t i = 0; i < indices.size(); ++i) {
       const auto frame = std::make_shared<const Frame>(sequence_.read_frame(indices[i]));
       PlaneSet answered = answer(session, frame);
-      if (first) exact_.push_back(std::move(answered));
-      const PlaneSet& results = first ? exact_.back() : answered;
+      const PlaneSet& results = first ? exact_.emplace_back(std::move(answered)) : answered;
       const Plane& depth = frame->planes.at({PlaneKind::kDepth, {}});
       const double pixels = static_cast<double>(depth.width()) * depth.height();
       up.add(frame->planes, sequence_.planes(), pixels);
