@@ -4,7 +4,7 @@
 set -euo pipefail
 
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
-deploy/install.sh
+deploy/install.sh --tests
 cmake --preset ci
 cmake --build --preset ci
 exec ctest --preset ci --parallel "$(nproc)" "$@"

@@ -53,6 +53,18 @@ TEST(SetPreset, RefusesAnUnknownNameAndThenChangesNothing) {
   EXPECT_TRUE(test::same_bits(test::filtered(denoiser, frame), test::filtered(other, frame)));
 }
 
+TEST(SetPreset, IsRefusedToAndFromReferenceWhichSharesNoHistory) {
+  const DenoiserConfig config = config_of("balanced");
+  Denoiser denoiser(config), untouched(config), reference(config_of("reference"));
+  test::expect_input_error([&] { denoiser.set_preset("reference"); }, "change of preset",
+                           "must not be to or from reference", "'balanced' to 'reference'");
+  test::expect_input_error([&] { reference.set_preset("fast"); }, "change of preset",
+                           "must not be to or from reference", "'reference' to 'fast'");
+  EXPECT_NO_THROW(reference.set_preset("reference"));
+  const Frame frame = test::noisy_frame(config, 0);
+  EXPECT_TRUE(test::same_bits(test::filtered(denoiser, frame), test::filtered(untouched, frame)));
+}
+
 TEST(SetPreset, HoldsFromTheNextFrameOnAndIsReported) {
   const DenoiserConfig config = config_of("balanced");
   Denoiser denoiser(config);

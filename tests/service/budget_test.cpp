@@ -5,6 +5,7 @@
 
 #include "server/calibration.h"
 #include "server/session_table.h"
+#include "tests/core/expect_input_error.h"
 #include "tests/service/served.h"
 
 namespace holdfast {
@@ -40,6 +41,14 @@ TEST(Budget, ATinyOneGivesTheFastestPresetAndALargeOneThePresetAskedFor) {
     for (const client::FrameOutput& output : answers(server, config, 1e6, 5))
       EXPECT_EQ(output.preset, asked);
   }
+}
+
+TEST(Budget, IsRefusedWithPresetReference) {
+  const server::Server server(server_config(1));
+  DenoiserConfig config = small_config();
+  config.preset = "reference";
+  test::expect_input_error([&] { answers(server, config, 10, 1); }, "budget",
+                           "must be 0 with preset reference", "10");
 }
 
 TEST(Budget, TheFastestPresetGivesTheBitsOfTheCoreWithThatPreset) {
