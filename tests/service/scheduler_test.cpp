@@ -5,7 +5,8 @@
 #include <mutex>
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/parallel_for.h>
+
+#include "core/kernels/parallel.h"
 
 namespace holdfast::server {
 namespace {
@@ -98,7 +99,7 @@ TEST(Scheduler, UsesNoMoreThreadsThanItWasGiven) {
       Scheduler scheduler(threads);
       for (int s = 0; s < 4; ++s)
         scheduler.post(std::make_shared<Strand>(), [&] {
-          oneapi::tbb::parallel_for(0, 64, [&](int) {
+          for_each_index(0, 64, 1, [&](int) {
             const int running = ++now;
             int seen = most;
             while (running > seen && !most.compare_exchange_weak(seen, running)) {
