@@ -91,6 +91,7 @@ class Replay {
       while (accept(session_.try_receive())) {
       }
     }
+    result_.with_budget = options_.budget_ms > 0;
     session_.finish();
     while (accept(session_.receive())) {
     }
@@ -153,17 +154,19 @@ ReplayResult replay_sequence(const ReplayOptions& options) {
 }
 
 nlohmann::ordered_json replay_json(const ReplayResult& result) {
-  return {{"frames", result.frames},
-          {"recipe", result.recipe},
-          {"preset", result.preset},
-          {"presets", result.presets},
-          {"width", result.width},
-          {"height", result.height},
-          {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},
-          {"bytes_in", result.bytes_in},
-          {"bytes_out", result.bytes_out},
-          {"non_finite_in", result.non_finite_in},
-          {"non_finite_out", result.non_finite_out}};
+  nlohmann::ordered_json json = {
+      {"frames", result.frames},
+      {"recipe", result.recipe},
+      {"preset", result.preset},
+      {"width", result.width},
+      {"height", result.height},
+      {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},
+      {"bytes_in", result.bytes_in},
+      {"bytes_out", result.bytes_out},
+      {"non_finite_in", result.non_finite_in},
+      {"non_finite_out", result.non_finite_out}};
+  if (result.with_budget) json["presets"] = result.presets;
+  return json;
 }
 
 }  // namespace holdfast::cli
