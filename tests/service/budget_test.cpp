@@ -11,11 +11,17 @@
 namespace holdfast {
 namespace {
 
-using test::server_config;
 using test::small_config;
 using test::small_frame;
 
 /// The session's answers under a budget, one frame after the other.
+/// As holdfast-server does: costs are measured before the first session asks for a budget.
+server::ServerConfig calibrated(int threads) {
+  server::ServerConfig config = test::server_config(threads);
+  config.calibrate = true;
+  return config;
+}
+
 std::vector<client::FrameOutput> answers(const server::Server& server, const DenoiserConfig& config,
                                          double budget_ms, int frames) {
   client::SessionOptions options = test::session_options(server, config);
@@ -32,7 +38,7 @@ std::vector<client::FrameOutput> answers(const server::Server& server, const Den
 }
 
 TEST(Budget, ATinyOneGivesTheFastestPresetAndALargeOneThePresetAskedFor) {
-  const server::Server server(server_config(1));
+  const server::Server server(calibrated(1));
   for (const std::string& asked : kernel_preset_names()) {
     DenoiserConfig config = small_config();
     config.preset = asked;
@@ -44,7 +50,7 @@ TEST(Budget, ATinyOneGivesTheFastestPresetAndALargeOneThePresetAskedFor) {
 }
 
 TEST(Budget, IsRefusedWithPresetReference) {
-  const server::Server server(server_config(1));
+  const server::Server server(calibrated(1));
   DenoiserConfig config = small_config();
   config.preset = "reference";
   test::expect_input_error([&] { answers(server, config, 10, 1); }, "budget",
@@ -52,7 +58,7 @@ TEST(Budget, IsRefusedWithPresetReference) {
 }
 
 TEST(Budget, TheFastestPresetGivesTheBitsOfTheCoreWithThatPreset) {
-  const server::Server server(server_config(2));
+  const server::Server server(calibrated(2));
   DenoiserConfig config = small_config();
   const auto outputs = answers(server, config, 1e-6, 4);
   config.preset = "fast";
@@ -66,7 +72,7 @@ TEST(Budget, TheFastestPresetGivesTheBitsOfTheCoreWithThatPreset) {
 
 // On one thread, each frame of the other session is a wait of far more than the budget.
 TEST(Budget, ThePresetFallsUnderTheLoadOfAnotherSessionAndRisesAfterwards) {
-  const server::Server server(server_config(1));
+  const server::Server server(calibrated(1));
   DenoiserConfig config = small_config(64, 36);
   config.preset = "accurate";
   client::SessionOptions options = test::session_options(server, config);
