@@ -109,14 +109,24 @@ TEST(Budget, ThePresetFallsUnderTheLoadOfAnotherSessionAndRisesAfterwards) {
   session.close();
 }
 
+// The least of several measurements: what else runs on the machine only adds.
 TEST(Budget, CalibrationFindsTheFastestPresetTheCheapest) {
-  const server::CostTable table = server::calibrate();
-  ASSERT_EQ(table.size(), kernel_preset_names().size());
-  for (const server::PresetCost& cost : table)
-    for (const double part : {cost.frame, cost.visibility, cost.glossy, cost.indirect})
-      EXPECT_GT(part, 0);
-  EXPECT_LT(table[0].glossy + table[0].indirect, table[1].glossy + table[1].indirect);
-  EXPECT_LT(table[0].visibility, table[1].visibility);
+  constexpr double kUnknown = 1e30;
+  double visibility[2] = {kUnknown, kUnknown}, radiance[2] = {kUnknown, kUnknown};
+  const auto found = [&] { return radiance[0] < radiance[1] && visibility[0] < visibility[1]; };
+  for (int run = 0; run < 40 && !found(); ++run) {
+    const server::CostTable table = server::calibrate();
+    ASSERT_EQ(table.size(), kernel_preset_names().size());
+    for (const server::PresetCost& cost : table)
+      for (const double part : {cost.frame, cost.visibility, cost.glossy, cost.indirect})
+        EXPECT_GT(part, 0);
+    for (std::size_t k = 0; k < 2; ++k) {
+      visibility[k] = std::min(visibility[k], table[k].visibility);
+      radiance[k] = std::min(radiance[k], table[k].glossy + table[k].indirect);
+    }
+  }
+  EXPECT_LT(radiance[0], radiance[1]);
+  EXPECT_LT(visibility[0], visibility[1]);
 }
 
 // A session is accounted for with the preset that it asks for: those it may fall back to need less.
