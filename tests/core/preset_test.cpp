@@ -5,19 +5,12 @@
 #include "core/denoiser/plan.h"
 #include "tests/core/denoiser_world.h"
 #include "tests/core/expect_input_error.h"
+#include "tests/core/preset_world.h"
 
 namespace holdfast {
 namespace {
 
-DenoiserConfig config_of(const std::string& preset, int width = 37, int height = 29) {
-  DenoiserConfig config = test::full_config(width, height);
-  for (const PlaneKind kind :
-       {PlaneKind::kGlossyDirection, PlaneKind::kGlossyHitDistance, PlaneKind::kGlossyHitId,
-        PlaneKind::kRoughness, PlaneKind::kIndirectDirection, PlaneKind::kMotion})
-    config.planes.push_back({kind, {}});
-  config.preset = preset;
-  return config;
-}
+using test::config_of;
 
 PlaneSet last_of(const DenoiserConfig& config, int frames) {
   Denoiser denoiser(config);
