@@ -10,6 +10,7 @@
 #include "client/scenes/builtin.h"
 #include "client/scenes/mesh.h"
 #include "core/frame/error.h"
+#include "tests/sequence/temp_dir.h"
 
 namespace holdfast::scenes {
 namespace {
@@ -102,10 +103,14 @@ TEST(SceneJson, NamesEachMistake) {
 class ObjFile : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& text) {
-    const auto file = std::filesystem::path(testing::TempDir()) / "mesh_of_scene_test.obj";
+    const auto file = directory_ / "mesh.obj";
     std::ofstream(file) << text;
     return file;
   }
+
+ private:
+  // One for each test: tests run at the same time, each in a process of its own.
+  test::TempDir directory_;
 };
 
 TEST_F(ObjFile, PolygonsAndNegativeIndicesAreRead) {
