@@ -76,13 +76,16 @@ class Candidate {
     point.bytes_per_pixel =
         static_cast<double>(denoiser_.memory_bytes()) / (1.0 * config.width * config.height);
     point.composite_rmse = meters_.back().image().rmse;
-    const auto components = static_cast<double>(meters_.size() - 1);
-    double log_rmse = 0;
-    for (std::size_t k = 0; k + 1 < meters_.size(); ++k) {
-      log_rmse += std::log(meters_[k].image().rmse) / components;
-      point.ssim += meters_[k].image().ssim / components;
-    }
-    point.rmse = std::exp(log_rmse);
+    double log_rmse = 0, ssim = 0, count = 0;
+    for (std::size_t k = 0; k + 1 < meters_.size(); ++k)
+      for (const measure::LayerErrors& errors : {meters_[k].image(), meters_[k].effect()}) {
+        if (errors.judged_pixels == 0) continue;
+        log_rmse += std::log(errors.rmse);
+        ssim += errors.ssim;
+        ++count;
+      }
+    point.rmse = std::exp(log_rmse / count);
+    point.ssim = ssim / count;
   }
 
  private:

@@ -22,8 +22,9 @@ struct TradePoint {
   };
   std::vector<Stage> stages;
   double bytes_per_pixel = 0;  ///< held for history and scratch
-  /// Over the image: geometric mean of the RMSE and mean of the SSIM of the filtered components. A
-  /// composite would weigh them as the scene's materials happen to.
+  /// Geometric mean of the RMSE and mean of the SSIM over the filtered components, each judged over
+  /// the image and over the effect. A composite would weigh components as the scene's materials
+  /// happen to, and an image hides what moves.
   double rmse = 0, ssim = 0;
   double composite_rmse = 0;  ///< of the composite over the image
 };
