@@ -11,6 +11,7 @@
 #include "core/history/unlit.h"
 #include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
+#include "core/kernels/random.h"
 #include "core/spatial/filter_rows.h"
 #include "core/spatial/svgf_filter.h"
 
@@ -62,6 +63,12 @@ void keep_positive(Plane& radiance) {
   });
 }
 
+/// What the rounding of a history depends on: the frame, and whose history it is.
+std::uint64_t rounding_key(const ComponentInput& input, Component component) {
+  return mix_bits(static_cast<std::uint64_t>(input.key.frame)) + (std::uint64_t{component.light} << 8) +
+         static_cast<std::uint64_t>(component.kind);
+}
+
 /// A history that starts has met no later frame: without this, what was left here before a cut
 /// would count as a difference to it.
 void clear_residual(ComponentHistory& history) {
@@ -96,10 +103,34 @@ void Scratch::grow(int width, int height, const Plan& plan, const Plan::Grid& gr
       radiance_blend = RadianceBlendScratch(width, height, 2);
   }
   if (with_debug && !debug) debug = Channels<float>(width, height, kDebugChannels);
+  grow_rooms(width, height, plan, grid);
 }
 
-void Scratch::trim(const Plan::Grid& grid) noexcept {
-  if (!grid.any_radiance) radiance_blend = {};
+void Scratch::grow_rooms(int width, int height, const Plan& plan, const Plan::Grid& grid) {
+  const auto provide = [&](HistoryRoom& room, int channels) {
+    const HistoryExtras extras = plan.extras_of(channels);
+    const bool packed = plan.history_format == HistoryFormat::kPacked;
+    if (!room.now.data) room.now = ComponentHistory(width, height, channels, extras);
+    if (packed && !room.before.data)
+      room.before = ComponentHistory(width, height, channels, extras);
+    else if (!packed)
+      room.before = ComponentHistory(channels, extras);
+  };
+  if (grid.any_visibility) provide(visibility, 1);
+  if (grid.any_radiance) provide(radiance, 3);
+  if (!grid.any_cones) return;
+  ConeRoom other(width, height, plan.recipe.indirect_basis, plan.history_format);
+  if (other.bytes() != cones.bytes()) cones = std::move(other);
+}
+
+void Scratch::trim(const Plan& plan, const Plan::Grid& grid) noexcept {
+  if (!grid.any_radiance) {
+    radiance_blend = {};
+    radiance = {};
+  }
+  if (!grid.any_cones) cones = {};
+  if (plan.history_format != HistoryFormat::kPacked)
+    for (HistoryRoom* room : {&visibility, &radiance}) room->before.data = {};
   if (grid.any) return;
   Channels<float> kept = std::move(noisy);
   *this = Scratch();
@@ -109,24 +140,22 @@ void Scratch::trim(const Plan::Grid& grid) noexcept {
 std::size_t Scratch::bytes() const {
   return noisy.bytes() + measured.bytes() + means.bytes() + footprint.bytes() + effect.bytes() +
          window.between.bytes() + window.spread.bytes() + blend.bytes() + radiance_blend.bytes() +
-         filter.bytes() + gradients.bytes() + debug.bytes();
+         filter.bytes() + gradients.bytes() + visibility.before.bytes() + visibility.now.bytes() +
+         radiance.before.bytes() + radiance.now.bytes() + cones.bytes() + debug.bytes();
 }
 
-ComponentFilter::ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width,
-                                 int height)
+ComponentFilter::ComponentFilter(const Plan& plan, const Plan::Entry& entry, int width, int height)
     : component_(entry.component),
       has_footprint_(entry.has_footprint),
       follows_effect_(entry.follows_effect),
-      recipe_(recipe),
+      recipe_(plan.recipe_of(entry)),
       channels_(component_.kind == ComponentKind::kVisibility ? 1 : 3),
+      extras_(plan.extras_of(channels_)),
+      kept_(width, height, ComponentHistory(channels_, extras_).kept_as(), plan.history_format),
       row_samples_(static_cast<std::size_t>(height)),
       row_pixels_(static_cast<std::size_t>(height)) {
-  const bool residual = channels_ == 3 && recipe.blending == Blending::kExpectedError;
-  const auto extras = recipe.svgf_filter ? HistoryExtras::kMoments
-                      : residual         ? HistoryExtras::kResidual
-                                         : HistoryExtras::kNone;
-  if (entry.cones) cones_ = ConeHistory(width, height, recipe.indirect_basis);
-  for (auto& history : history_) history = ComponentHistory(width, height, channels_, extras);
+  if (entry.cones)
+    cones_ = ConeHistory(width, height, recipe_.indirect_basis, plan.history_format);
 }
 
 void ComponentFilter::change(Recipe&& recipe, ConeHistory* cones) noexcept {
@@ -135,7 +164,6 @@ void ComponentFilter::change(Recipe&& recipe, ConeHistory* cones) noexcept {
 }
 
 void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& out) {
-  now_ = 1 - now_;
   std::optional<ShadowTracer> tracer;
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
@@ -151,15 +179,17 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   blend(input, follows, scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
+  HistoryRoom& histories = room(scratch);
   if (input.unshadowed != nullptr)
-    set_unlit(*input.unshadowed, kUnlitSamples, history_[now_].samples());
+    set_unlit(*input.unshadowed, kUnlitSamples, histories.now.samples());
   filter(input, scratch, out);
   if (input.unshadowed != nullptr) {
-    set_unlit(*input.unshadowed, 0.0f, history_[now_].samples());
+    set_unlit(*input.unshadowed, 0.0f, histories.now.samples());
     pass_unlit(*input.unshadowed, std::as_const(scratch.noisy)[0], out.channel(0));
   }
   input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
-  count_history(input.frames.now);
+  count_history(input.frames.now, histories.now);
+  keep(input, histories);
 }
 
 void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) {
@@ -169,7 +199,7 @@ void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) 
     input.timer.end("vectors", vectors_traffic());
   }
   cones_.correct(input.frames, input.surface, follows ? &s.effect : nullptr, input.cone_samples,
-                 recipe_.cones, s.window);
+                 recipe_.cones, rounding_key(input, component_) + 1, s.cones, s.window);
   if (input.quads != nullptr) {
     const Channels<float>* pixels[HalfGrid::kQuad];
     for (std::size_t k = 0; k < HalfGrid::kQuad; ++k) pixels[k] = input.cone_samples[k].radiance;
@@ -261,8 +291,10 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   if (follows) sources.effect = &s.effect;
   if (input.gradients && sources.surface != nullptr)
     sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
-  const ComponentHistory& before = history_[1 - now_];
-  ComponentHistory& now = history_[now_];
+  HistoryRoom& histories = room(s);
+  kept_.recall(histories.before.data);
+  const ComponentHistory& before = histories.before;
+  ComponentHistory& now = histories.now;
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
   changed_share_ = 0;
   if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
@@ -303,7 +335,7 @@ bool ComponentFilter::shadows_at_rest(const ComponentInput& input) const {
 }
 
 void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out) {
-  ComponentHistory& now = history_[now_];
+  ComponentHistory& now = room(s).now;
   const Signal signal{&now.data, channels_, std::as_const(now).samples(),
                       std::as_const(s.means)[kSampleVariance],
                       has_footprint_ ? &s.footprint : nullptr};
@@ -319,8 +351,19 @@ void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out
   if (cones_) keep_positive(out);
 }
 
-void ComponentFilter::count_history(const Guides& now) {
-  const ComponentHistory& history = history_[now_];
+void ComponentFilter::keep(const ComponentInput& input, HistoryRoom& histories) {
+  kept_.keep(histories.now.data, rounding_key(input, component_));
+  // Floats have changed places with their room: what was theirs is the next frame's room.
+  if (!histories.now.data) std::swap(histories.now.data, histories.before.data);
+}
+
+ComponentHistory ComponentFilter::kept() const {
+  ComponentHistory history(channels_, extras_);
+  history.data = kept_.copy();
+  return history;
+}
+
+void ComponentFilter::count_history(const Guides& now, const ComponentHistory& history) {
   for_each_row(now.view.height, [&](int y) {
     double samples = 0, pixels = 0;
     for (int x = 0; x < now.view.width; ++x) {

@@ -14,6 +14,11 @@
 
 namespace holdfast {
 
+/// The histories of a component while it is filtered: that of the frame before, and its own.
+struct HistoryRoom {
+  ComponentHistory before, now;  ///< `before` has no images of its own where floats are kept
+};
+
 /// Images that the components of one resolution need while they are filtered, one after the other.
 /// Nothing in here outlives a component's turn.
 struct Scratch {
@@ -28,6 +33,8 @@ struct Scratch {
   RadianceBlendScratch radiance_blend;
   FilterScratch filter;
   GradientScratch gradients;  ///< samples of the component; only where a component has them
+  HistoryRoom visibility, radiance;
+  ConeRoom cones;
   Channels<float> debug;      ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
@@ -36,9 +43,13 @@ struct Scratch {
   Scratch(int width, int height, const Plan& plan, const Plan::Grid& grid, bool debug);
   /// Adds the images that another plan of the same session needs; the others stay as they are.
   void grow(int width, int height, const Plan& plan, const Plan::Grid& grid, bool debug);
-  /// Lets go of images that only components of this resolution, or its radiance, would need.
-  void trim(const Plan::Grid& grid) noexcept;
+  /// Lets go of images that only components of this resolution, or its radiance, or another format
+  /// of their histories would need.
+  void trim(const Plan& plan, const Plan::Grid& grid) noexcept;
   std::size_t bytes() const;
+
+ private:
+  void grow_rooms(int width, int height, const Plan& plan, const Plan::Grid& grid);
 };
 
 /// The input of one component, besides `Scratch::noisy`.
@@ -62,7 +73,7 @@ struct ComponentInput {
 class ComponentFilter {
  public:
   /// For images of that size.
-  ComponentFilter(const Plan::Entry& entry, const Recipe& recipe, int width, int height);
+  ComponentFilter(const Plan& plan, const Plan::Entry& entry, int width, int height);
 
   /// Works by another recipe from the next frame on: that of another preset. `cones` replace what
   /// was kept by cones; null: that goes on.
@@ -72,16 +83,16 @@ class ComponentFilter {
   void run(const ComponentInput& input, Scratch& scratch, Plane& out);
 
   Component component() const { return component_; }
-  /// What the last frame left, for the next one.
-  const ComponentHistory& history() const { return history_[now_]; }
-  ComponentHistory& history() { return history_[now_]; }
+  /// A copy of what the last frame left for the next one; something else in its place.
+  ComponentHistory kept() const;
+  void keep(ComponentHistory& history) { kept_.keep(history.data, 0); }
   /// Mean of the samples behind the pixels on surfaces, after the last frame.
   double mean_history_frames() const { return mean_history_frames_; }
   /// Share of the tiles whose light has changed though nothing moved, in the last frame.
   double changed_share() const { return changed_share_; }
-  std::size_t history_bytes() const {
-    return history_[0].data.bytes() + history_[1].data.bytes() + cones_.bytes();
-  }
+  /// Kept from frame to frame.
+  std::size_t history_bytes() const { return kept_.bytes(); }
+  std::size_t cone_bytes() const { return cones_.bytes(); }
 
  private:
   void correct_by_cones(const ComponentInput& input, Scratch& s);
@@ -89,17 +100,19 @@ class ComponentFilter {
   bool shadows_at_rest(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
+  HistoryRoom& room(Scratch& s) const { return channels_ == 1 ? s.visibility : s.radiance; }
   void blend(const ComponentInput& input, bool follows, Scratch& s);
   void filter(const ComponentInput& input, Scratch& s, Plane& out);
-  void count_history(const Guides& now);
+  void keep(const ComponentInput& input, HistoryRoom& histories);
+  void count_history(const Guides& now, const ComponentHistory& history);
 
   Component component_;
   bool has_footprint_, follows_effect_;
   Recipe recipe_;
   int channels_;
   ConeHistory cones_;  ///< empty unless the plan keeps cones
-  ComponentHistory history_[2];
-  int now_ = 0;  ///< index of the history that the current frame writes
+  HistoryExtras extras_;
+  KeptImages kept_;
   std::vector<double> row_samples_, row_pixels_;
   double mean_history_frames_ = 0, changed_share_ = 0;
 };

@@ -63,7 +63,7 @@ class Denoiser::Impl {
     for (const std::uint32_t light : plan.shaded_lights)
       shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height);
     for (const Plan::Entry& entry : plan.components) {
-      filters.emplace_back(entry, plan.recipe_of(entry), entry.half ? half_size(c.width) : c.width,
+      filters.emplace_back(plan, entry, entry.half ? half_size(c.width) : c.width,
                            entry.half ? half_size(c.height) : c.height);
       signals.push_back(component_plane(entry.component));
     }
@@ -288,7 +288,8 @@ std::size_t Denoiser::memory_bytes() const {
   sum += impl_->half.bytes();
   if (impl_->oracle) sum += impl_->oracle->bytes();
   for (const Guides& g : impl_->guides) sum += g.bytes();
-  for (const ComponentFilter& filter : impl_->filters) sum += filter.history_bytes();
+  for (const ComponentFilter& filter : impl_->filters)
+    sum += filter.history_bytes() + filter.cone_bytes();
   for (const Plane& plane : impl_->shaded) sum += plane.bytes();
   return sum;
 }
@@ -307,8 +308,10 @@ std::string Denoiser::plan_text() const {
   add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
   add("scratch", impl_->scratch.bytes());
   add("all that is at half resolution, but for what components keep", impl_->half.bytes());
-  for (const ComponentFilter& filter : impl_->filters)
+  for (const ComponentFilter& filter : impl_->filters) {
     add("kept of " + component_name(filter.component()), filter.history_bytes());
+    add("kept cones of " + component_name(filter.component()), filter.cone_bytes());
+  }
   std::size_t shaded = 0;
   for (const Plane& plane : impl_->shaded) shaded += plane.bytes();
   add("unshadowed light", shaded);

@@ -25,6 +25,10 @@ struct DenoiserConfig {
   /// once, or "none" alone; empty = the preset's choice. A component that the session lacks, or
   /// that has gradient samples, is not affected.
   std::vector<std::string> half_resolution;
+  /// Likewise how histories are kept: "f16" (signals in 16 bits, statistics in 8, with exponents
+  /// common to 64 pixels) or "f32"; empty = the preset's choice. `reference` keeps doubles in any
+  /// case, and recipes that keep moments of the luminance (svgf, asvgf) keep floats.
+  std::string history;
   int kernel_radius =
       0;                ///< likewise, of the a-trous kernel: 1 (3x3 taps), 2 (5x5); 0 = its choice
   int more_levels = 0;  ///< a-trous levels of radiance added to the recipe's, -3..1

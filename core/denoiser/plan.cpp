@@ -81,6 +81,11 @@ bool is_halved(const Preset& preset, ComponentKind kind) {
   return false;
 }
 
+/// Of the moments of the luminance their difference is used, which may be any small part of them.
+HistoryFormat format_of(const Preset& preset, const Recipe& recipe) {
+  return recipe.svgf_filter ? HistoryFormat::kFloat : preset.history;
+}
+
 }  // namespace
 
 Plan Plan::make(const DenoiserConfig& config) {
@@ -93,6 +98,7 @@ Plan Plan::make(const DenoiserConfig& config) {
   apply(plan.preset, !config.indirect_basis.empty(), plan.recipe);
   const Recipe& recipe = plan.recipe;
   plan.history = recipe.blending != Blending::kNoHistory;
+  if (plan.history) plan.history_format = format_of(plan.preset, recipe);
   for (const PlaneId id : config.planes) {
     const std::uint32_t light = id.component.light;
     if (id.kind == PlaneKind::kVisibility) {
@@ -124,12 +130,20 @@ Plan Plan::make(const DenoiserConfig& config) {
     grid.any_radiance |= entry.component.kind != ComponentKind::kVisibility;
     grid.any_footprint |= entry.has_footprint;
     grid.any_effect |= entry.follows_effect;
+    grid.any_visibility |= entry.component.kind == ComponentKind::kVisibility;
+    grid.any_cones |= entry.cones;
   }
   for (const Light& light : config.lights)
     if (is_shaded_here(config, light)) plan.shaded_lights.push_back(light.id);
   plan.shaded_lobe =
       has(config, {PlaneKind::kSpecular, {}}) && has(config, {PlaneKind::kRoughness, {}});
   return plan;
+}
+
+HistoryExtras Plan::extras_of(int channels) const {
+  if (recipe.svgf_filter) return HistoryExtras::kMoments;
+  const bool residual = channels == 3 && recipe.blending == Blending::kExpectedError;
+  return residual ? HistoryExtras::kResidual : HistoryExtras::kNone;
 }
 
 Recipe Plan::recipe_of(const Entry& entry) const {

@@ -29,6 +29,8 @@ struct Plan {
     bool any_radiance = false;   ///< one has three channels
     bool any_footprint = false;  ///< one has a footprint
     bool any_effect = false;     ///< one follows its effect
+    bool any_visibility = false;
+    bool any_cones = false;      ///< one is kept by cones
   };
   Recipe recipe;  ///< as the preset has it
   Preset preset;  ///< as the configuration has it
@@ -37,6 +39,7 @@ struct Plan {
       shaded_lights;           ///< ids; unshadowed light that the core computes itself
   bool shaded_lobe = false;    ///< ... with a specular lobe
   bool history = false;        ///< the recipe keeps history at all
+  HistoryFormat history_format = HistoryFormat::kNone;  ///< how
   Grid full, half;             ///< the components of the frame's own resolution, and of half of it
   bool any_gradients = false;  ///< a component has gradient samples
   bool roughness = false;      ///< roughness is kept with the guides
@@ -45,6 +48,8 @@ struct Plan {
   /// Checks `config` and derives its plan. Throws InputError naming what is wrong.
   static Plan make(const DenoiserConfig& config);
 
+  /// Besides signal and samples, what the history of a component of so many channels holds.
+  HistoryExtras extras_of(int channels) const;
   /// The recipe of a component: at half resolution the same reach takes a level less.
   Recipe recipe_of(const Entry& entry) const;
 

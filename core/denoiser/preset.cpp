@@ -19,8 +19,10 @@ std::vector<Preset> make_presets() {
                     .half_indirect = true,
                     .half_glossy = true};
   const Preset balanced{.name = "balanced"};
-  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
-  const Preset reference{.name = "reference", .oracle = true};
+  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour,
+                        .history = HistoryFormat::kFloat};
+  const Preset reference{
+      .name = "reference", .history = HistoryFormat::kFloat, .oracle = true};
   return {fast, balanced, accurate, reference};
 }
 
@@ -77,6 +79,16 @@ void choose_resolution(const DenoiserConfig& config, Preset& preset) {
   }
 }
 
+void choose_history(const DenoiserConfig& config, Preset& preset) {
+  if (config.history.empty()) return;
+  for (const HistoryFormat format : {HistoryFormat::kPacked, HistoryFormat::kFloat})
+    if (config.history == history_name(format)) {
+      preset.history = format;
+      return;
+    }
+  throw InputError("history", "must be f16 or f32", "'" + config.history + "'");
+}
+
 void choose_filter(const DenoiserConfig& config, Preset& preset) {
   if (config.kernel_radius < 0 || config.kernel_radius > 2)
     throw InputError("kernel radius", "must be 1 or 2, or 0 for the preset's",
@@ -98,6 +110,7 @@ Preset find_preset(const DenoiserConfig& config) {
   Preset preset = preset_of_name(config.preset);
   choose_basis(config, preset);
   choose_resolution(config, preset);
+  choose_history(config, preset);
   choose_filter(config, preset);
   return preset;
 }
@@ -108,6 +121,15 @@ void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
     *levels = std::max(*levels + preset.more_levels, 1);
   if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)
     recipe.indirect_basis = preset.indirect_basis;
+}
+
+const char* history_name(HistoryFormat format) {
+  switch (format) {
+    case HistoryFormat::kNone: return "none";
+    case HistoryFormat::kPacked: return "f16";
+    case HistoryFormat::kFloat: return "f32";
+  }
+  return "";
 }
 
 const char* basis_name(RadianceBasis basis) {

@@ -17,6 +17,8 @@ struct Preset {
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;  ///< indirect light is filtered at half resolution
   bool half_glossy = false;    ///< reflections likewise
+  HistoryFormat history = HistoryFormat::kPacked;  ///< of recipes that keep one, but for those that
+                                                   ///< keep moments of the luminance, as floats
   bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow
   int more_levels = 0;  ///< of the a-trous filter of radiance, beside the recipe's
 };
@@ -32,6 +34,9 @@ Preset find_preset(const DenoiserConfig& config);
 
 /// Puts the preset's choices into a recipe; `force_basis`: also if the recipe keeps no cones.
 void apply(const Preset& preset, bool force_basis, Recipe& recipe);
+
+/// Name of a format, as DenoiserConfig::history has it.
+const char* history_name(HistoryFormat format);
 
 /// Name of a basis, as DenoiserConfig::indirect_basis has it.
 const char* basis_name(RadianceBasis basis);

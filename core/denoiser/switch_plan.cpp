@@ -29,8 +29,22 @@ void upsample_history(const ComponentHistory& half, const Guides& half_guides,
   }
 }
 
+/// A filter of `next` that keeps the same in another format.
+ComponentFilter in_other_format(const DenoiserConfig& config, const Plan& next, std::size_t k,
+                                const Guides* last, const PlannedParts& parts) {
+  const Plan::Entry& entry = next.components[k];
+  ComponentFilter filter(next, entry, entry.half ? half_size(config.width) : config.width,
+                         entry.half ? half_size(config.height) : config.height);
+  if (last == nullptr) return filter;
+  ComponentHistory history = parts.filters[k].kept();
+  filter.keep(history);
+  return filter;
+}
+
 /// Whether the half-size frame would hold other buffers.
 bool halves_differ(const Plan& a, const Plan& b) {
+  if (a.history_format != b.history_format) return true;
+  if (a.half.any_cones && a.recipe.indirect_basis != b.recipe.indirect_basis) return true;
   return !std::equal(a.components.begin(), a.components.end(), b.components.begin(),
                      [](const Plan::Entry& x, const Plan::Entry& y) {
                        return x.half == y.half && (!x.half || x.cones == y.cones);
@@ -47,16 +61,17 @@ ComponentFilter at_other_resolution(const DenoiserConfig& config, const Plan& ne
                                     const Guides* last, const HalfFrame& next_half,
                                     const PlannedParts& parts) {
   const Plan::Entry& entry = next.components[k];
-  const Recipe recipe = next.recipe_of(entry);
-  const ComponentHistory& before = parts.filters[k].history();
-  if (entry.half) {
-    ComponentFilter filter(entry, recipe, half_size(config.width), half_size(config.height));
-    if (last != nullptr)
-      halve_signal(before.data, before.data.count(), next_half.grid(), filter.history().data);
-    return filter;
-  }
-  ComponentFilter filter(entry, recipe, config.width, config.height);
-  if (last != nullptr) upsample_history(before, parts.half.guides(), *last, filter.history());
+  const int width = entry.half ? half_size(config.width) : config.width;
+  const int height = entry.half ? half_size(config.height) : config.height;
+  ComponentFilter filter(next, entry, width, height);
+  if (last == nullptr) return filter;
+  const ComponentHistory before = parts.filters[k].kept();
+  ComponentHistory after(width, height, before.channels, before.extras);
+  if (entry.half)
+    halve_signal(before.data, before.data.count(), next_half.grid(), after.data);
+  else
+    upsample_history(before, parts.half.guides(), *last, after);
+  filter.keep(after);
   return filter;
 }
 
@@ -89,9 +104,13 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
     replaced[k].recipe = next.recipe_of(entry);
     if (entry.half != plan.components[k].half)
       replaced[k].filter = at_other_resolution(config, next, k, last, half, parts);
+    else if (plan.history_format != next.history_format)
+      replaced[k].filter = in_other_format(config, next, k, last, parts);
     else if (cones_differ(plan, next, k))
       replaced[k].cones =
-          entry.cones ? ConeHistory(width, height, next.recipe.indirect_basis) : ConeHistory();
+          entry.cones
+              ? ConeHistory(width, height, next.recipe.indirect_basis, next.history_format)
+              : ConeHistory();
   }
   parts.scratch.grow(config.width, config.height, next, next.full, config.debug_planes);
 
@@ -105,7 +124,7 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
   }
   if (other_half) parts.half = std::move(half);
   if (!needs_surface || surface.taps) parts.surface = std::move(surface);
-  parts.scratch.trim(next.full);
+  parts.scratch.trim(next, next.full);
   parts.plan = std::move(next);
 }
 

@@ -22,7 +22,8 @@ struct PlannedParts {
 ///   resolution      half: signal, samples and differences become the means over each quad's
 ///                   surface; full: they are upsampled along planes, normals and ids. Samples are
 ///                   not counted anew: four pixels that share a value have as many together
-///   basis, or resolution of a component with cones: the cones start anew. They only take noise out
+///   format          the same values, rounded where they are packed
+///   basis, or resolution or format of a component with cones: the cones start anew. They only take noise out
 ///                   of new samples, whose mean is right without them
 /// `last`: guides of the frame before; null: no history is worth keeping. If memory runs out,
 /// `parts` are as they were.

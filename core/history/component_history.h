@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/history/effect_history.h"
+#include "core/history/kept_images.h"
 #include "core/history/surface_history.h"
 
 namespace holdfast {
@@ -12,8 +13,8 @@ enum class HistoryExtras {
   kResidual,  ///< mean difference of the history to later frames, R, G, B, and its variance
 };
 
-/// What is kept of one component between frames, per pixel: the accumulated signal, the number of
-/// equal samples behind it, and what the recipe asks for besides.
+/// What one frame leaves of a component for the next, per pixel: the accumulated signal, the number
+/// of equal samples behind it, and what the recipe asks for besides.
 struct ComponentHistory {
   Channels<float> data;
   int channels = 1;  ///< of the signal: 1 or 3
@@ -25,6 +26,20 @@ struct ComponentHistory {
         channels(signal_channels),
         extras(with) {}
 
+  /// The same without images.
+  ComponentHistory(int signal_channels, HistoryExtras with)
+      : channels(signal_channels), extras(with) {}
+  std::size_t bytes() const { return data.bytes(); }
+  /// How its channels are kept when packed: the signal in halves, statistics in bytes.
+  std::vector<KeptAs> kept_as() const {
+    std::vector<KeptAs> as(static_cast<std::size_t>(channels), KeptAs::kHalf);
+    as.push_back(KeptAs::kByte);
+    if (has_moments()) as.insert(as.end(), {KeptAs::kHalf, KeptAs::kHalf});
+    if (extras == HistoryExtras::kResidual)
+      as.insert(as.end(), {KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kSignedByte,
+                           KeptAs::kByte});
+    return as;
+  }
   static int extra_channels(HistoryExtras extras) {
     return extras == HistoryExtras::kNone ? 0 : (extras == HistoryExtras::kMoments ? 2 : 4);
   }

@@ -14,6 +14,8 @@ constexpr int channels_of(int colours) {
   return (used + kMaxFilterChannels - 1) / kMaxFilterChannels * kMaxFilterChannels;
 }
 
+int colours_of(RadianceBasis basis) { return basis == RadianceBasis::kConesColour ? 3 : 1; }
+
 /// Lane i of six channels, from one set of cones to another.
 void mix(const ConeMix& mix, float* const* of, int i) {
   float mixed[kCones] = {};
@@ -34,33 +36,60 @@ void choose_taps(const SurfaceHistory* surface, const EffectHistory* effect, int
   for (int i = 0; i < count; ++i) taps[i] = first[i].any() ? first[i] : second[i];
 }
 
+/// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
+/// neighbours by its samples.
+void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
+  FilterRow pass;
+  pass.guides = &guides;
+  pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
+  pass.channels = kMaxFilterChannels;
+  pass.spread_in = std::as_const(window.spread)[0];
+  pass.spread_out = window.spread[1];
+  for (int first = 0; first < room.kept.count(); first += kMaxFilterChannels) {
+    for (int c = 0; c < kMaxFilterChannels; ++c) {
+      pass.in[c] = std::as_const(room.updated)[first + c];
+      pass.out[c] = room.kept[first + c];
+    }
+    filter_image(pass);
+  }
+}
+
 }  // namespace
 
-ConeHistory::ConeHistory(int width, int height, RadianceBasis basis)
-    : colours_(basis == RadianceBasis::kConesColour ? 3 : 1),
-      kept_(width, height, channels_of(colours_)),
-      updated_(width, height, channels_of(colours_)) {}
+ConeRoom::ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format)
+    : updated(width, height, channels_of(colours_of(basis))) {
+  if (format == HistoryFormat::kPacked)
+    kept = Channels<float>(width, height, channels_of(colours_of(basis)));
+}
 
-ConeRows ConeHistory::rows_at(int x, int y, int count) {
+ConeHistory::ConeHistory(int width, int height, RadianceBasis basis, HistoryFormat format)
+    : colours_(colours_of(basis)),
+      kept_(width, height,
+            std::vector<KeptAs>(static_cast<std::size_t>(channels_of(colours_)), KeptAs::kByte),
+            format) {}
+
+ConeRows ConeHistory::rows_at(int x, int y, int count, ConeRoom& room) const {
   ConeRows rows{count, colours_, {}};
-  for (int c = 0; c < updated_.count(); ++c) rows.of[c] = updated_[c].row(y) + x;
+  for (int c = 0; c < room.updated.count(); ++c) rows.of[c] = room.updated[c].row(y) + x;
   return rows;
 }
 
 void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface,
                           const EffectHistory* effect, std::span<const ConeSamples> samples,
-                          const ConeRule& rule, WindowScratch& window) {
+                          const ConeRule& rule, std::uint64_t key, ConeRoom& room,
+                          WindowScratch& window) {
   const Guides& now = frames.now;
+  kept_.recall(room.kept);
   for_each_row(now.view.height, [&](int y) {
     Taps taps[kTapBlock];
     for (int x = 0; x < now.view.width; x += kTapBlock) {
       const int count = std::min(kTapBlock, now.view.width - x);
       choose_taps(surface, effect, x, y, count, taps);
-      const ConeRows rows = rows_at(x, y, count);
+      const ConeRows rows = rows_at(x, y, count, room);
       ConeCorrection block{now.depth().row(y) + x, {},   {}, rule.prior_samples,
                            rule.most_samples,      rows, {}};
       for (int c = 0; c < 3; ++c) block.normal[c] = now.normal(c).row(y) + x;
-      recall(frames.previous, taps, block.normal, rows);
+      recall(frames.previous, room, taps, block.normal, rows);
       for (const ConeSamples& sample : samples) {
         for (int c = 0; c < 3; ++c) {
           block.direction[c] = sample.directions->channel(c).row(y) + x;
@@ -70,39 +99,22 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
       }
     }
   });
-  spread_out(now, window);
+  spread_out(now, room, window);
+  kept_.keep(room.kept, key);
 }
 
 /// The cones that were kept at the taps, turned to the normals of now.
-void ConeHistory::recall(const Guides& previous, const Taps* taps, const float* const (&normal)[3],
-                         const ConeRows& rows) const {
+void ConeHistory::recall(const Guides& previous, const ConeRoom& room, const Taps* taps,
+                         const float* const (&normal)[3], const ConeRows& rows) const {
   float before[3][kTapBlock];
   std::uint8_t turned[kTapBlock];
-  recall_cones({taps, kept_, previous, {normal[0], normal[1], normal[2]}, rows, before, turned});
+  recall_cones({taps, room.kept, previous, {normal[0], normal[1], normal[2]}, rows, before, turned});
   for (int i = 0; i < rows.count; ++i) {
     if (!turned[i]) continue;
     const glm::vec3 from(before[0][i], before[1][i], before[2][i]);
     const ConeMix mixed(ConeFrame<float>(glm::normalize(from)),
                         ConeFrame<float>({normal[0][i], normal[1][i], normal[2][i]}));
     for (int c = 0; c <= colours_; ++c) mix(mixed, rows.of + c * kCones, i);
-  }
-}
-
-/// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
-/// neighbours by its samples.
-void ConeHistory::spread_out(const Guides& guides, WindowScratch& window) {
-  FilterRow pass;
-  pass.guides = &guides;
-  pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
-  pass.channels = kMaxFilterChannels;
-  pass.spread_in = std::as_const(window.spread)[0];
-  pass.spread_out = window.spread[1];
-  for (int first = 0; first < kept_.count(); first += kMaxFilterChannels) {
-    for (int c = 0; c < kMaxFilterChannels; ++c) {
-      pass.in[c] = std::as_const(updated_)[first + c];
-      pass.out[c] = kept_[first + c];
-    }
-    filter_image(pass);
   }
 }
 

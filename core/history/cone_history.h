@@ -5,6 +5,7 @@
 #include "core/history/cone_kernel.h"
 #include "core/history/effect_history.h"
 #include "core/history/frame_pair.h"
+#include "core/history/kept_images.h"
 #include "core/history/surface_history.h"
 #include "core/spatial/window.h"
 
@@ -22,6 +23,19 @@ struct ConeSamples {
   Channels<float>* radiance;
 };
 
+/// Images that cones need while a frame is filtered; nothing in them outlives it. Channels in
+/// groups that one filter pass takes: sums of radiance by colour and cone, samples by cone; with
+/// luminance alone then R and B, weighed like the sum of luminance.
+struct ConeRoom {
+  Channels<float> kept;     ///< those of the frame before, then of this; empty where floats are kept
+  Channels<float> updated;  ///< before they are spread out
+
+  ConeRoom() = default;
+  /// `basis`: of cones.
+  ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format);
+  std::size_t bytes() const { return kept.bytes() + updated.bytes(); }
+};
+
 /// Incident radiance of every pixel by cone, from frame to frame; what it is good for is to take
 /// out of a sample what is only due to where it was drawn. A sample of radiance x in cone k, its
 /// cones' radiances L known from frames before, becomes
@@ -35,30 +49,30 @@ class ConeHistory {
  public:
   ConeHistory() = default;
   /// `basis`: of cones.
-  ConeHistory(int width, int height, RadianceBasis basis);
+  ConeHistory(int width, int height, RadianceBasis basis, HistoryFormat format);
 
-  explicit operator bool() const { return static_cast<bool>(kept_); }
-  std::size_t bytes() const { return kept_.bytes() + updated_.bytes(); }
+  explicit operator bool() const { return kept_.format() != HistoryFormat::kNone; }
+  HistoryFormat format() const { return kept_.format(); }
+  std::size_t bytes() const { return kept_.bytes(); }
 
   /// Replaces the samples, one or more a pixel, by x', which may be negative, and learns from them.
   /// A sample whose direction is (0,0,0), not finite or below the surface stays, and teaches
   /// nothing. `surface`, `effect`: where each pixel's radiance
   /// was one frame ago, `effect` where `surface` has no taps; either may be null, and without
   /// `surface` nothing is known.
+  /// `key`: of KeptImages::keep.
   ///   reads guides, taps, directions | writes radiance | halo 1 px
   void correct(const FramePair& frames, const SurfaceHistory* surface, const EffectHistory* effect,
-               std::span<const ConeSamples> samples, const ConeRule& rule, WindowScratch& window);
+               std::span<const ConeSamples> samples, const ConeRule& rule, std::uint64_t key,
+               ConeRoom& room, WindowScratch& window);
 
  private:
-  ConeRows rows_at(int x, int y, int count);
-  void recall(const Guides& previous, const Taps* taps, const float* const (&normal)[3],
-              const ConeRows& rows) const;
-  void spread_out(const Guides& guides, WindowScratch& window);
+  ConeRows rows_at(int x, int y, int count, ConeRoom& room) const;
+  void recall(const Guides& previous, const ConeRoom& room, const Taps* taps,
+              const float* const (&normal)[3], const ConeRows& rows) const;
 
   int colours_ = 1;  ///< of a cone: luminance, or R, G, B
-  /// Channels, in groups that one filter pass takes: sums of radiance by colour and cone, samples
-  /// by cone; with luminance alone then R and B, weighed like the sum of luminance.
-  Channels<float> kept_, updated_;
+  KeptImages kept_;  ///< channels as in ConeRoom
 };
 
 }  // namespace holdfast

@@ -1,0 +1,145 @@
+#include "core/history/half_block.h"
+
+#include "core/history/block_exponent.h"
+#include "core/kernels/variants.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace holdfast {
+namespace {
+
+constexpr std::uint32_t kLost = 0x1fffu;  // bits of a float that a half has no room for
+constexpr int kGreatest = 14;             // exponent of the greatest value of a block
+
+/// A block's values, scaled and rounded to what halves hold.
+struct Rounding {
+  const HalfPacking& block;
+  float* out;  ///< kHalfBlock
+};
+
+HOLDFAST_INLINE void round_block_body(const Rounding& a) {
+  const float* in = a.block.in;
+  const int count = a.block.count;
+  const std::uint32_t seed = a.block.seed;
+  const int shift = block_shift(in, count, kGreatest);
+  *a.block.exponent = static_cast<std::int8_t>(shift);
+  const float scale = power_of_two(shift);
+  float* out = a.out;
+  for (int i = count; i < kHalfBlock; ++i) out[i] = 0.0f;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t noise = random_bits(static_cast<std::uint32_t>(i), seed) & kLost;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
+    out[i] = std::bit_cast<float>((bits + noise) & ~kLost);
+  }
+}
+
+struct Narrowing {
+  const float* in;  ///< as `round_block` leaves them
+  int count;
+  std::uint16_t* out;
+};
+
+HOLDFAST_INLINE int whole_groups(int count) {
+  return (count + kHalfGroup - 1) / kHalfGroup * kHalfGroup;
+}
+
+HOLDFAST_INLINE void narrow_plain_body(const Narrowing& a) {
+  constexpr std::int32_t kLeastNormal = (kFloatBias - 14) << 23;
+  constexpr std::uint32_t kRebias = std::uint32_t{kFloatBias - 15} << 10;
+  const float* in = a.in;
+  std::uint16_t* out = a.out;
+  const int count = whole_groups(a.count);
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i]), magnitude = bits & kMagnitudeBits;
+    // A step of a float at 0.5 is one of the least halves: the sum's rounding is theirs.
+    const float moved = std::bit_cast<float>(magnitude) + 0.5f;
+    const std::uint32_t tiny = std::bit_cast<std::uint32_t>(moved) - 0x3f000000u;
+    const std::uint32_t normal = (magnitude >> 13) - kRebias;
+    const std::uint32_t half =
+        static_cast<std::int32_t>(magnitude) < kLeastNormal ? tiny : normal;
+    out[i] = static_cast<std::uint16_t>(half | ((bits >> 16) & 0x8000u));
+  }
+}
+
+HOLDFAST_INLINE void widen_plain_body(const HalfUnpacking& a) {
+  const float scale = power_of_two(-a.exponent);
+  const std::uint16_t* in = a.in;
+  float* out = a.out;
+  const int count = whole_groups(a.count);
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t half = in[i];
+    const float magnitude = std::bit_cast<float>((half & 0x7fffu) << 13) * power_of_two(kFloatBias - 15);
+    const std::uint32_t sign = (half & 0x8000u) << 16;
+    out[i] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(magnitude * scale) | sign);
+  }
+}
+
+HOLDFAST_KERNEL(round_block, Rounding)
+HOLDFAST_KERNEL(narrow_plain, Narrowing)
+HOLDFAST_KERNEL(widen_plain, HalfUnpacking)
+
+#if defined(__x86_64__)
+// By the conversions of the machine, which every x86-64-v3 has.
+
+constexpr __mmask16 kAll = 0xffff;  // GCC 12 warns of the forms without a mask
+
+__attribute__((target("arch=x86-64-v3"))) void narrow_v3(const Narrowing& a) noexcept {
+  for (int i = 0; i < a.count; i += 8)
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(a.out + i),
+                     _mm256_cvtps_ph(_mm256_loadu_ps(a.in + i), _MM_FROUND_TO_NEAREST_INT));
+}
+
+__attribute__((target("arch=x86-64-v3"))) void widen_v3(const HalfUnpacking& a) noexcept {
+  const __m256 scale = _mm256_set1_ps(power_of_two(-a.exponent));
+  for (int i = 0; i < a.count; i += 8) {
+    const __m128i halves = _mm_loadu_si128(reinterpret_cast<const __m128i*>(a.in + i));
+    _mm256_storeu_ps(a.out + i, _mm256_mul_ps(_mm256_cvtph_ps(halves), scale));
+  }
+}
+
+HOLDFAST_TARGET_V4 void narrow_v4(const Narrowing& a) noexcept {
+  for (int i = 0; i < a.count; i += 16)
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(a.out + i),
+                        _mm512_maskz_cvtps_ph(kAll, _mm512_loadu_ps(a.in + i),
+                                              _MM_FROUND_TO_NEAREST_INT));
+}
+
+HOLDFAST_TARGET_V4 void widen_v4(const HalfUnpacking& a) noexcept {
+  const __m512 scale = _mm512_set1_ps(power_of_two(-a.exponent));
+  for (int i = 0; i < a.count; i += 16) {
+    const __m256i halves = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(a.in + i));
+    _mm512_storeu_ps(a.out + i, _mm512_mul_ps(_mm512_maskz_cvtph_ps(kAll, halves), scale));
+  }
+}
+#endif
+
+void narrow(const Narrowing& a) noexcept {
+#if defined(__x86_64__)
+  if (selected_isa() == Isa::kX86_64V4) return narrow_v4(a);
+  if (selected_isa() == Isa::kX86_64V3) return narrow_v3(a);
+#endif
+  narrow_plain(a);
+}
+
+}  // namespace
+
+void pack_half_block(const HalfPacking& block) noexcept {
+  float rounded[kHalfBlock];
+  round_block({block, rounded});
+  narrow({rounded, block.count, block.out});
+}
+
+void unpack_half_block(const HalfUnpacking& block) noexcept {
+#if defined(__x86_64__)
+  if (selected_isa() == Isa::kX86_64V4) return widen_v4(block);
+  if (selected_isa() == Isa::kX86_64V3) return widen_v3(block);
+#endif
+  widen_plain(block);
+}
+
+}  // namespace holdfast
