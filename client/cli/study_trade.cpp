@@ -1,6 +1,7 @@
 #include "client/cli/study_trade.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <memory>
 
@@ -18,7 +19,6 @@ namespace holdfast::cli {
 namespace {
 
 constexpr std::size_t kWarmUp = 2;  // frames: the first has no history, the second fills buffers
-constexpr PlaneId kComposite{PlaneKind::kComposite, {}};
 
 /// Processor time of this thread, ms.
 double processor_ms() {
@@ -56,8 +56,12 @@ class Candidate {
     stages_.push_back(std::move(parts));
   }
 
-  void judge(const measure::ReferenceLayer& reference) {
-    meter_.add(reference, results_.at(kComposite));
+  /// `references`: of the judged layers, always in the same order.
+  void judge(const std::vector<measure::ReferenceLayer>& references,
+             const std::vector<PlaneId>& layers) {
+    meters_.resize(layers.size());
+    for (std::size_t k = 0; k < layers.size(); ++k)
+      meters_[k].add(references[k], results_.at(layers[k]));
   }
 
   void write(measure::TradePoint& point) const {
@@ -71,15 +75,23 @@ class Candidate {
     }
     point.bytes_per_pixel =
         static_cast<double>(denoiser_.memory_bytes()) / (1.0 * config.width * config.height);
-    const measure::LayerErrors errors = meter_.image();
-    point.rmse = errors.rmse;
-    point.ssim = errors.ssim;
+    point.composite_rmse = meters_.back().image().rmse;
+    double log_rmse = 0, ssim = 0, count = 0;
+    for (std::size_t k = 0; k + 1 < meters_.size(); ++k)
+      for (const measure::LayerErrors& errors : {meters_[k].image(), meters_[k].effect()}) {
+        if (errors.judged_pixels == 0) continue;
+        log_rmse += std::log(errors.rmse);
+        ssim += errors.ssim;
+        ++count;
+      }
+    point.rmse = std::exp(log_rmse / count);
+    point.ssim = ssim / count;
   }
 
  private:
   Denoiser denoiser_;
   PlaneSet results_;
-  measure::LayerMeter meter_;
+  std::vector<measure::LayerMeter> meters_;  ///< components, then the composite
   std::vector<double> ms_;
   std::vector<std::vector<measure::TradePoint::Stage>> stages_;
 };
@@ -109,13 +121,29 @@ class Candidates {
   std::vector<std::size_t> of_setting_;
 };
 
-/// The composite's reference of a frame.
-measure::ReferenceLayer reference_of(const SequenceReader& sequence, const Frame& frame,
-                                     std::size_t position, measure::ReferenceTrack& track) {
+/// The filtered components of a scene, then the composite.
+std::vector<PlaneId> layers_of(const DenoiserConfig& scene) {
+  std::vector<PlaneId> layers;
+  for (const PlaneId plane : scene.planes)
+    if (plane.kind == PlaneKind::kVisibility || plane.kind == PlaneKind::kGlossy ||
+        plane.kind == PlaneKind::kIndirect)
+      layers.push_back(plane);
+  layers.push_back({PlaneKind::kComposite, {}});
+  return layers;
+}
+
+/// A frame's references of `layers`.
+std::vector<measure::ReferenceLayer> references_of(const SequenceReader& sequence,
+                                                   const Frame& frame, std::size_t position,
+                                                   const std::vector<PlaneId>& layers,
+                                                   std::vector<measure::ReferenceTrack>& tracks) {
   const PlaneSet planes = sequence.read_reference(frame.index);
-  const measure::CleanImage clean = measure::clean_image(planes.at(kComposite));
-  return track.next(frame.index, position, clean.image,
-                    measure::surface_mask(frame.planes.at({PlaneKind::kDepth, {}})));
+  const measure::Mask surface = measure::surface_mask(frame.planes.at({PlaneKind::kDepth, {}}));
+  std::vector<measure::ReferenceLayer> references;
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    references.push_back(tracks[k].next(frame.index, position,
+                                        measure::clean_image(planes.at(layers[k])).image, surface));
+  return references;
 }
 
 DenoiserConfig config_of(const SequenceReader& sequence) {
@@ -136,14 +164,16 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
   const std::vector<TradeSetting> settings = trade_settings(config, options.recipes);
   const Candidates candidates(settings);
   Progress progress("trade " + name, static_cast<std::int64_t>(indices.size()), options.quiet);
-  measure::ReferenceTrack track(measure::Measure::kTonemap, false);
+  const std::vector<PlaneId> layers = layers_of(config);
+  std::vector<measure::ReferenceTrack> tracks;
+  for (const PlaneId layer : layers) tracks.emplace_back(measure::measure_of(layer.kind), false);
   std::size_t judged = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const Frame frame = sequence.read_frame(indices[i]);
     for (const auto& candidate : candidates) candidate->filter(frame, i >= kWarmUp);
     if (sequence.has_reference(indices[i])) {
-      const measure::ReferenceLayer reference = reference_of(sequence, frame, i, track);
-      for (const auto& candidate : candidates) candidate->judge(reference);
+      const auto references = references_of(sequence, frame, i, layers, tracks);
+      for (const auto& candidate : candidates) candidate->judge(references, layers);
       ++judged;
     }
     progress.update(static_cast<std::int64_t>(i) + 1);

@@ -65,9 +65,9 @@ void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
                                            .indirect_basis = basis,
                                            .half_indirect = half_indirect,
                                            .half_glossy = half_glossy}));
-  for (Preset parts : all_presets())
+  for (const Preset& preset : all_presets())
     for (const int more : {-1, 1}) {
-      Preset other = parts;
+      Preset other = preset;
       other.more_levels += more;
       add_once(settings, free_setting(scene, recipe, other));
     }
@@ -81,6 +81,7 @@ std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
   for (const std::string& recipe : recipes) {
     find_recipe(recipe);
     for (const Preset& preset : all_presets()) {
+      if (preset.oracle) continue;  // the error of `balanced`, at ten times the time
       TradeSetting setting = setting_of(scene, recipe, preset);
       setting.point.presets = {preset.name};
       setting.config.preset = preset.name;

@@ -14,7 +14,8 @@ struct TradeSetting {
   DenoiserConfig config;      ///< of the scene
 };
 
-/// What a scene's sequence is tried with: every preset of each recipe, presets first; and of the
+/// What a scene's sequence is tried with: every preset of each recipe but
+/// `reference`, presets first; and of the
 /// first recipe also every kernel, basis of indirect light and choice of half resolution, and one
 /// a-trous level less and more in each of its presets.
 /// `scene`: size, lights and planes. Throws InputError for an unknown recipe.

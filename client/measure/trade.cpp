@@ -74,7 +74,7 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
   for (const TradePoint& point : scenes.front().points) {
     TradePoint mean = point;
     mean.stages.clear();
-    double time = 0, error = 0, bytes = 0, ssim = 0;
+    double time = 0, error = 0, composite = 0, bytes = 0, ssim = 0;
     bool everywhere = true;
     for (const TradeScene& scene : scenes) {
       const TradePoint* own = same_setting(scene, point);
@@ -82,12 +82,14 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
       if (own == nullptr) continue;
       time += std::log(own->ms / balanced(scene)->ms);
       error += std::log(own->rmse / balanced(scene)->rmse);
+      composite += std::log(own->composite_rmse / balanced(scene)->composite_rmse);
       bytes += std::log(own->bytes_per_pixel);
       ssim += own->ssim;
     }
     if (!everywhere) continue;
     mean.ms = std::exp(time / count);
     mean.rmse = std::exp(error / count);
+    mean.composite_rmse = std::exp(composite / count);
     mean.bytes_per_pixel = std::exp(bytes / count);
     mean.ssim = ssim / count;
     all.points.push_back(mean);

@@ -22,7 +22,11 @@ struct TradePoint {
   };
   std::vector<Stage> stages;
   double bytes_per_pixel = 0;  ///< held for history and scratch
-  double rmse = 0, ssim = 0;   ///< of the composite over the image
+  /// Geometric mean of the RMSE and mean of the SSIM over the filtered components, each judged over
+  /// the image and over the effect. A composite would weigh components as the scene's materials
+  /// happen to, and an image hides what moves.
+  double rmse = 0, ssim = 0;
+  double composite_rmse = 0;  ///< of the composite over the image
 };
 
 /// A scene with everything that was tried on it.
@@ -44,9 +48,9 @@ std::vector<std::size_t> pareto_front(const std::vector<TradePoint>& points,
 /// front, 0.1 where another has 10 % less.
 double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t point);
 
-/// All scenes as one: of each setting that every scene has, the geometric means of time, RMSE and
-/// bytes and the mean of SSIM; time and RMSE are over those of "reliable balanced" on each scene.
-/// No points if that one is missing.
+/// All scenes as one: of each setting that every scene has, the geometric means of time, both RMSE
+/// and bytes and the mean of SSIM; time and RMSE are over those of "reliable balanced" on each
+/// scene. No points if that one is missing.
 TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes);
 
 }  // namespace holdfast::measure

@@ -79,7 +79,7 @@ std::string grid(const Axes& axes, bool relative) {
                    "<text transform=\"translate(18 %.0f) rotate(-90)\" "
                    "text-anchor=\"middle\">%s</text>",
                    (kTop + bottom) / 2,
-                   relative ? "RMSE over that of balanced" : "RMSE of the composite");
+                   relative ? "RMSE over that of balanced" : "RMSE of components");
 }
 
 std::string front_line(const TradeScene& scene, const Axes& axes) {

@@ -41,6 +41,7 @@ nlohmann::ordered_json scene_json(const TradeScene& scene) {
                               {"bytes_per_pixel", point.bytes_per_pixel},
                               {"rmse", point.rmse},
                               {"ssim", point.ssim},
+                              {"composite_rmse", point.composite_rmse},
                               {"front", on_front(scene, k)},
                               {"rmse_behind_front", rmse_behind_front(scene.points, k)}});
   }
@@ -55,8 +56,9 @@ std::vector<std::vector<std::string>> rows_of(const TradeScene& scene, bool rela
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return scene.points[a].ms < scene.points[b].ms;
   });
-  std::vector<std::vector<std::string>> rows{
-      {"setting", relative ? "time" : "ms", "B/pixel", "RMSE", "SSIM", "RMSE behind the front"}};
+  std::vector<std::vector<std::string>> rows{{"setting", relative ? "time" : "ms", "B/pixel",
+                                              "RMSE", "SSIM", "RMSE behind the front",
+                                              "RMSE of the composite"}};
   for (const std::size_t k : order) {
     const TradePoint& point = scene.points[k];
     rows.push_back({point_name(point), number_text(point.ms, relative ? 3 : 1),
@@ -64,7 +66,8 @@ std::vector<std::vector<std::string>> rows_of(const TradeScene& scene, bool rela
                     number_text(point.rmse, relative ? 3 : 4), number_text(point.ssim, 4),
                     on_front(scene, k)
                         ? "on it"
-                        : number_text(100 * rmse_behind_front(scene.points, k), 1) + " %"});
+                        : number_text(100 * rmse_behind_front(scene.points, k), 1) + " %",
+                    number_text(point.composite_rmse, relative ? 3 : 4)});
   }
   return rows;
 }
@@ -138,7 +141,8 @@ void write_trade_report(const std::filesystem::path& file, const std::vector<Tra
         "</title><style>" +
             std::string(kReportStyle) +
             "</style></head><body><main><h1>Holdfast: speed and accuracy</h1><p>Each point is one "
-            "setting: its processor time and the RMSE of the composite. The dashed line is the "
+            "setting: its processor time and the RMSE of its components (their geometric mean). "
+            "The dashed line is the "
             "front: what no other setting beats in both.</p>" +
             each(scenes, scene_html) + "</main></body></html>\n");
 }

@@ -30,11 +30,13 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
   EXPECT_EQ(keys(scene), (Names{"caption", "height", "points", "width"}));
   std::set<std::string> names;
   for (const auto& point : scene["points"]) {
-    EXPECT_EQ(keys(point), (Names{"bytes_per_pixel", "front", "half_resolution", "indirect_basis",
-                                  "kernel_radius", "more_levels", "ms", "name", "presets", "recipe",
-                                  "rmse", "rmse_behind_front", "ssim", "stages"}));
+    EXPECT_EQ(keys(point),
+              (Names{"bytes_per_pixel", "composite_rmse", "front", "half_resolution",
+                     "indirect_basis", "kernel_radius", "more_levels", "ms", "name", "presets",
+                     "recipe", "rmse", "rmse_behind_front", "ssim", "stages"}));
     EXPECT_GT(point["ms"], 0.0);
     EXPECT_GT(point["rmse"], 0.0);
+    EXPECT_GT(point["composite_rmse"], 0.0);
     EXPECT_GT(point["bytes_per_pixel"], 0.0);
     EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
   }

@@ -21,6 +21,7 @@ TradePoint point(const std::string& recipe, double ms, double rmse,
   out.presets = std::move(presets);
   out.ms = ms;
   out.rmse = rmse;
+  out.composite_rmse = rmse * rmse;
   out.bytes_per_pixel = 100;
   out.ssim = 0.9;
   out.basis = "cones";
@@ -81,6 +82,7 @@ TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
   three.points.push_back(half);
   half.ms = 4;
   half.rmse = 0.02;
+  half.composite_rmse = 0.0003;
   two.points.push_back(half);
   const TradeScene all = trade_over_scenes({three, two});
   ASSERT_EQ(all.points.size(), 2u);
@@ -88,6 +90,8 @@ TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
   EXPECT_DOUBLE_EQ(all.points[0].rmse, 1);
   EXPECT_DOUBLE_EQ(all.points[1].ms, 1) << "half and twice the time";
   EXPECT_DOUBLE_EQ(all.points[1].rmse, 2);
+  EXPECT_DOUBLE_EQ(all.points[0].composite_rmse, 1);
+  EXPECT_NEAR(all.points[1].composite_rmse, std::sqrt(4 * 3), 1e-12);
   EXPECT_EQ(trade_over_scenes({one, two}).points.size(), 1u) << "one scene lacks the other setting";
   EXPECT_TRUE(trade_over_scenes({TradeScene{"x", "", 8, 8, {half}}}).points.empty());
 }
