@@ -10,12 +10,14 @@
 
 #include "client/stability/entry.h"
 #include "client/stability/outcome.h"
+#include "core/history/accumulate.h"
+#include "core/kernels/random.h"
 
 namespace holdfast::stability {
 namespace {
 
-constexpr int kPeriod = 32;       ///< frames after which what moves is where it was
-constexpr int kSettled = 256;     ///< frames after which any history is as long as it gets
+constexpr int kPeriod = 32;    ///< frames after which what moves is where it was
+constexpr int kSettled = 256;  ///< frames after which any history is as long as it gets
 constexpr int kStillDraws = 4096, kMovingDraws = 512;  ///< of a truth
 
 struct Sums {
@@ -127,14 +129,55 @@ Entry moving(const char* name, int frames, Entry::Cost cost) {
           cost};
 }
 
+/// The exponential mean by itself, since no recipe has a weight of 0 or 1: the largest difference
+/// after `frames` frames of random light from `expected`(mean of all, last).
+double blended(float alpha, int frames, const std::function<double(double, double)>& expected) {
+  constexpr int kWidth = 8, kHeight = 3;
+  const AccumulationRule rule{.alpha = alpha};
+  Guides wall(kWidth, kHeight);
+  wall.view.width = kWidth;
+  wall.view.height = kHeight;
+  SurfaceHistory surface(kWidth, kHeight);
+  Channels<float> noisy(kWidth, kHeight, 1);
+  ComponentHistory history[2] = {{kWidth, kHeight, 1, HistoryExtras::kNone},
+                                 {kWidth, kHeight, 1, HistoryExtras::kNone}};
+  double sums[kHeight][kWidth] = {}, worst = 0;
+  for (int t = 0; t < frames; ++t) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        wall.depth_normal[0].at(x, y) = 5;
+        if (t > 0) surface.taps[0].at(x, y) = identity_taps(wall, x, y);
+        const auto key = static_cast<std::uint64_t>((t * kHeight + y) * kWidth + x);
+        noisy[0].at(x, y) = uniform_pair(mix_bits(key)).u;
+        sums[y][x] += double{noisy[0].at(x, y)};
+      }
+    accumulate(wall, noisy, {&surface, nullptr, {}}, rule, history[(t + 1) % 2], history[t % 2],
+               nullptr);
+  }
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      worst = std::max(worst, std::abs(double{history[(frames - 1) % 2].data[0].at(x, y)} -
+                                       expected(sums[y][x] / frames, double{noisy[0].at(x, y)})));
+  return worst;
+}
+
 }  // namespace
 
 // History that drifts, or that gives up what it knows, would make the error grow.
 std::vector<Entry> long_entries() {
-  return {at_rest("long-run", 2000, Entry::Cost::kSmall),
-          at_rest("very-long-run", 100000, Entry::Cost::kLong),
-          moving("moving-run", 1024, Entry::Cost::kSmall),
-          moving("long-moving-run", 10016, Entry::Cost::kLong)};
+  return {
+      at_rest("long-run", 2000, Entry::Cost::kSmall),
+      at_rest("very-long-run", 100000, Entry::Cost::kLong),
+      {"alpha-0", "an exponential mean of least weight 0, over 4096 frames",
+       "the plain mean of all samples of 0..1: the largest difference", 2e-5,
+       [](const std::string&) {
+         return blended(0, 4096, [](double mean, double) { return mean; });
+       }},
+      {"alpha-1", "an exponential mean of least weight 1, over 64 frames",
+       "the last frame, to the last bit", 0,
+       [](const std::string&) { return blended(1, 64, [](double, double last) { return last; }); }},
+      moving("moving-run", 1024, Entry::Cost::kSmall),
+      moving("long-moving-run", 10016, Entry::Cost::kLong)};
 }
 
 }  // namespace holdfast::stability

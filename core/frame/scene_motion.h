@@ -33,8 +33,8 @@ class SceneMotion {
   /// that is not finite, a singular camera, or a light id that `known_lights` lacks.
   void advance(const Frame& frame, int width, int height, const std::vector<Light>& known_lights);
 
-  /// Becomes `full` in pixels of twice the size (ViewGeometry::halved), for this frame: it is not to
-  /// be advanced.
+  /// Becomes `full` in pixels of twice the size (ViewGeometry::halved), for this frame: it is not
+  /// to be advanced.
   void follow_halved(const SceneMotion& full);
 
   static constexpr std::size_t kMostObjects = std::size_t{1} << 16;

@@ -71,8 +71,7 @@ TEST(SceneMotion, RemembersOnlySoManyObjectsAndForgetsThoseListedLongestAgo) {
 TEST(SceneMotion, AFrameMayListMoreObjectsThanAreRemembered) {
   const Camera camera = test::perspective_camera(kWidth, kHeight);
   TransformTable objects;
-  for (std::uint32_t k = 1; k <= SceneMotion::kMostObjects + 10; ++k)
-    objects[k] = glm::dmat4(1);
+  for (std::uint32_t k = 1; k <= SceneMotion::kMostObjects + 10; ++k) objects[k] = glm::dmat4(1);
   SceneMotion scene;
   advance(scene, frame_of(camera, objects));
   for (auto& [id, matrix] : objects) matrix[3].x = 1;
