@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/history/unlit.h"
 #include "core/oracle/antilag.h"
 #include "core/oracle/candidates.h"
+#include "core/oracle/composite.h"
 #include "core/oracle/dual_past.h"
 #include "core/oracle/exponential.h"
 #include "core/oracle/reflections.h"
@@ -174,12 +176,55 @@ void ComponentOracle::run_chain(const FrameView& view, const PlaneSet& planes, c
   if (sources.surface != nullptr) sources.antilag = antilag;
   Blended blended = blend(view, noisy, sources, statistics);
   history_ = std::move(blended.now);
-  out.filtered = filter(view, statistics);
+  out.filtered = filter_lit(view, planes, noisy, statistics);
   out.motion = std::move(blended.motion);
   out.frames = std::move(blended.frames);
   out.weight = std::move(blended.weight);
   out.changed_share = blended.changed_share;
   out.mean_history_frames = mean_on_surfaces(view.now, history_.samples);
+}
+
+/// Filters the history. Where a light sends nothing, its visibility is passed through, and says
+/// next to nothing to its neighbours and nothing to later frames.
+Image ComponentOracle::filter_lit(const FrameView& view, const PlaneSet& planes, const Image& noisy,
+                                  const Statistics& statistics) {
+  const Image lit = lit_of(view, planes);
+  const auto for_each_unlit = [&](const auto& body) {
+    for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+      if (lit.at(x, y) == 0) body(x, y);
+    });
+  };
+  for_each_unlit([&](int x, int y) { history_.samples.at(x, y) = double{kUnlitSamples}; });
+  Image out = filter(view, statistics);
+  for_each_unlit([&](int x, int y) {
+    history_.samples.at(x, y) = 0;
+    out.at(x, y) = noisy.at(x, y);
+  });
+  return out;
+}
+
+/// 1 where the light reaches the surface; empty: not known.
+Image ComponentOracle::lit_of(const FrameView& view, const PlaneSet& planes) const {
+  if (!visibility_) return {};
+  const std::uint32_t id = entry_.component.light;
+  const auto make = [&](const auto& value_at) {
+    Image lit(view.now.width, view.now.height, 1);
+    for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+      for (int c = 0; c < 3; ++c)
+        if (!(value_at(x, y, c) <= 0.0)) lit.at(x, y) = 1;
+    });
+    return lit;
+  };
+  if (const Plane* given = planes.find(PlaneId::of_light(PlaneKind::kUnshadowed, id)))
+    return make(
+        [&](int x, int y, int c) { return static_cast<double>(given->channel(c).at(x, y)); });
+  for (const Light& light : config_.lights) {
+    const auto& shaded = plan_.shaded_lights;
+    if (light.id != id || std::find(shaded.begin(), shaded.end(), id) == shaded.end()) continue;
+    const Image own = shade(view.now, light, view.scene.light(id), plan_.shaded_lobe, planes);
+    return make([&](int x, int y, int c) { return own.at(x, y, c); });
+  }
+  return {};
 }
 
 Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const Sources& sources,
