@@ -199,6 +199,9 @@ void DenoiseStream::log_frame(const FrameSlot& slot) const {
     state_.log->debug("event=frame session={} frame={} preset={} core_ms={:.2f} reset={}",
                       session_->id(), slot.frame.index, slot.answer->report.preset,
                       slot.answer->report.ms, slot.answer->report.history_reset);
+  if (slot.error || slot.repeated) return;
+  if (const auto repairs = watch_->repairs().note(slot.answer->report, slot.answered))
+    state_.log->warn("event=repaired session={} {}", session_->id(), *repairs);
 }
 
 /// For the live page, if somebody looks at it.

@@ -9,6 +9,7 @@
 
 #include "server/frame_slot.h"
 #include "server/preview.h"
+#include "server/repair_log.h"
 
 namespace holdfast::server {
 
@@ -41,6 +42,7 @@ class SessionWatch {
   Glance glance(TimePoint now) const;
   int ordinal() const { return ordinal_; }
   PreviewBox& preview() { return preview_; }
+  RepairLog& repairs() { return repairs_; }
 
   static constexpr std::size_t kWindow = 240;  ///< frames: four seconds of a fast game
   static constexpr double kRateSeconds = 5;
@@ -48,6 +50,7 @@ class SessionWatch {
  private:
   const int ordinal_;
   PreviewBox preview_;
+  RepairLog repairs_;
   mutable std::mutex mutex_;
   Glance counts_;               ///< without what follows from the two below
   std::deque<Times> times_;     ///< oldest first

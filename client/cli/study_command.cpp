@@ -155,7 +155,9 @@ void add_quality_options(CLI::App& command, CLI::Option* with_vectors, CLI::Opti
 }
 
 void add_stability_options(CLI::App& command, CLI::Option* with_stability, Arguments& arguments) {
-  command.add_flag("--long", arguments.with_long, "Of --stability: a run of 100 000 frames, too")
+  command
+      .add_flag("--long", arguments.with_long,
+                "Of --stability: runs of 100 000 frames at rest and 10 000 that move, too")
       ->needs(with_stability);
   command
       .add_flag("--large", arguments.with_large,

@@ -44,5 +44,6 @@ std::vector<Entry> camera_entries();
 std::vector<Entry> object_entries();
 std::vector<Entry> size_entries();
 std::vector<Entry> time_entries();
+std::vector<Entry> long_entries();
 
 }  // namespace holdfast::stability

@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "client/stability/oracle_study.h"
+#include "core/denoiser/plan.h"
+#include "core/oracle/frame_oracle.h"
 
 namespace holdfast::stability {
 namespace {
@@ -105,6 +107,22 @@ Results filter_frames(DenoiserConfig config, const std::string& preset,
   Denoiser denoiser(config);
   Results results(frames.size());
   for (std::size_t k = 0; k < frames.size(); ++k) denoiser.filter(frames[k], results[k]);
+  return results;
+}
+
+Results filter_by_oracle(DenoiserConfig config, const std::string& preset,
+                         const std::vector<Frame>& frames) {
+  config.preset = preset;
+  config.debug_planes = true;
+  const Plan plan = Plan::make(config);
+  oracle::FrameOracle oracle(config, plan);
+  Results results(frames.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    FrameReport report;
+    StageTimer timer(report.stages);
+    const bool has_past = k > 0 && !frames[k].cut && plan.history;
+    oracle.filter(frames[k], has_past, results[k], report, timer);
+  }
   return results;
 }
 

@@ -35,7 +35,7 @@ std::vector<OracleFinding> study_oracle(
       config.recipe = recipe;
       findings.push_back({recipe, scene.name,
                           oracle_errors(filter_frames(config, "balanced", scene.frames),
-                                        filter_frames(config, "reference", scene.frames))});
+                                        filter_by_oracle(config, "balanced", scene.frames))});
     }
   }
   return findings;

@@ -37,6 +37,9 @@ struct OracleErrors {
 using Results = std::vector<PlaneSet>;
 Results filter_frames(DenoiserConfig config, const std::string& preset,
                       const std::vector<Frame>& frames);
+/// The same in double precision: what the oracle makes of all that a preset chooses.
+Results filter_by_oracle(DenoiserConfig config, const std::string& preset,
+                         const std::vector<Frame>& frames);
 
 /// The errors of `floats` against `doubles`, one entry a plane. Motion is compared in pixels,
 /// history in units of its largest value, confidence and visibility as they are, radiance in units
@@ -58,7 +61,8 @@ struct OracleFinding {
   std::string recipe, scene;
   std::vector<OracleErrors> errors;
 };
-/// Filters the scenes with presets `balanced` and `reference` under each recipe (none: all).
+/// Filters the scenes with preset `balanced`, and with the oracle in its place, under each recipe
+/// (none: all).
 std::vector<OracleFinding> study_oracle(
     const std::vector<std::string>& recipes,
     const std::function<void(const std::string& recipe)>& progress);

@@ -19,8 +19,9 @@ std::string number(double value) {
 
 std::vector<Entry> all_entries() {
   std::vector<Entry> all;
-  for (const auto& group : {scale_entries(), radiance_entries(), surface_entries(), light_entries(),
-                            camera_entries(), object_entries(), size_entries(), time_entries()})
+  for (const auto& group :
+       {scale_entries(), radiance_entries(), surface_entries(), light_entries(), camera_entries(),
+        object_entries(), size_entries(), time_entries(), long_entries()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

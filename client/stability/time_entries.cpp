@@ -10,53 +10,6 @@
 namespace holdfast::stability {
 namespace {
 
-World still_world(const std::string& recipe) {
-  World world;
-  world.recipe = recipe;
-  world.still = true;
-  return world;
-}
-
-double rmse(const PlaneSet& a, const PlaneSet& truth) {
-  double sum = 0, count = 0;
-  for (const Plane& mean : truth)
-    for (int c = 0; c < mean.channels(); ++c)
-      for (int y = 0; y < mean.height(); ++y)
-        for (int x = 0; x < mean.width(); ++x, count += 1) {
-          const double d =
-              double{a.at(mean.id()).channel(c).at(x, y)} - double{mean.channel(c).at(x, y)};
-          sum += d * d;
-        }
-  return std::sqrt(sum / count);
-}
-
-/// The error after many frames at rest, over that after 256: history that drifts, or that gives up
-/// what it knows, would make it grow. Means of 32 frames each.
-double drift(const std::string& recipe, int frames) {
-  World world = still_world(recipe);
-  world.width = 9;
-  world.height = 7;
-  const PlaneSet mean = truth(world, 0, 4096);
-  Denoiser denoiser(session_of(world));
-  double early = 0, late = 0;
-  PlaneSet results;
-  for (int t = 0; t < frames; ++t) {
-    if (denoiser.filter(render(world, t), results).non_finite_out > 0) return HUGE_VAL;
-    if (t >= 224 && t < 256) early += rmse(results, mean);
-    if (t >= frames - 32) late += rmse(results, mean);
-  }
-  return late / early;
-}
-
-Entry long_run(const char* name, int frames, Entry::Cost cost) {
-  return {name,
-          std::to_string(frames) + " frames of a scene at rest",
-          "no drift: the error at the end over that after 256 frames",
-          1.2,
-          [=](const std::string& recipe) { return drift(recipe, frames); },
-          cost};
-}
-
 /// Indices with gaps, up to the last that there is, against 0, 1, 2, ...
 double gaps(const std::string& recipe) {
   World world;
@@ -105,9 +58,7 @@ double repeats(const std::string& recipe) {
 }  // namespace
 
 std::vector<Entry> time_entries() {
-  return {long_run("long-run", 2000, Entry::Cost::kSmall),
-          long_run("very-long-run", 100000, Entry::Cost::kLong),
-          {"index-gaps",
+  return {{"index-gaps",
            "indices from -9e9 to the largest, with gaps",
            "as with 0, 1, 2, ..., relative to each plane's largest value",
            {0, 0.5},

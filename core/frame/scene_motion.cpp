@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -49,6 +50,8 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
   const bool new_light = follow(light_tracks_, frame.lights, first);
   appeared_ = new_object || new_light;
   has_past_ = true;
+  ++frames_;
+  forget_oldest();
 
   slot_ids_.clear();
   objects_.assign(1, compose(Track{}));
@@ -61,10 +64,28 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
   }
 }
 
+/// Clients may name new objects for ever.
+void SceneMotion::forget_oldest() {
+  if (object_tracks_.size() <= kMostObjects) return;
+  std::vector<std::uint64_t> listed;
+  for (const auto& [id, track] : object_tracks_) listed.push_back(track.listed);
+  // A quarter more than must go, so that it is not done for each new object.
+  const auto kept = listed.begin() + static_cast<std::ptrdiff_t>(kMostObjects / 4 * 3);
+  std::nth_element(listed.begin(), kept, listed.end(), std::greater<>());
+  const std::uint64_t oldest = *kept, now = frames_ - 1;
+  std::erase_if(object_tracks_, [&](const auto& track) {
+    return track.second.listed <= oldest && track.second.listed != now;
+  });
+}
+
 void SceneMotion::follow_halved(const SceneMotion& full) {
-  *this = full;
-  view_ = view_.halved();
-  previous_view_ = previous_view_.halved();
+  light_tracks_ = full.light_tracks_;  // of objects only those that move now are asked for
+  slot_ids_ = full.slot_ids_;
+  objects_ = full.objects_;
+  geometry_at_rest_ = full.geometry_at_rest_;
+  appeared_ = full.appeared_;
+  view_ = full.view_.halved();
+  previous_view_ = full.previous_view_.halved();
   for (ObjectMotion<float>& object : objects_) {
     object.prev_pixel = halved_pixels(object.prev_pixel);
     object.next_pixel = halved_pixels(object.next_pixel);
@@ -101,6 +122,7 @@ bool SceneMotion::follow(std::map<std::uint32_t, Track>& tracks, const Transform
   for (const auto& [id, matrix] : moved) {
     const auto [it, is_new] = tracks.try_emplace(id, Track{matrix, matrix});
     appeared |= is_new;
+    it->second.listed = frames_;
     if (is_new) continue;
     it->second.now = matrix;
     if (first) it->second.before = matrix;

@@ -24,15 +24,21 @@ struct ObjectMotion {
 };
 
 /// Follows cameras, objects and lights from frame to frame and answers where a point was before.
-/// A frame's tables list only what moved; this class remembers the rest.
+/// A frame's tables list only what moved; this class remembers the rest, up to kMostObjects:
+/// beyond that it forgets the objects that were listed longest ago. One that is listed again after
+/// that counts as new.
 class SceneMotion {
  public:
   /// Takes the next frame's camera and tables. Throws InputError (state unchanged) for a matrix
   /// that is not finite, a singular camera, or a light id that `known_lights` lacks.
   void advance(const Frame& frame, int width, int height, const std::vector<Light>& known_lights);
 
-  /// Becomes `full` in pixels of twice the size (ViewGeometry::halved).
+  /// Becomes `full` in pixels of twice the size (ViewGeometry::halved), for this frame: it is not
+  /// to be advanced.
   void follow_halved(const SceneMotion& full);
+
+  static constexpr std::size_t kMostObjects = std::size_t{1} << 16;
+  std::size_t remembered_objects() const { return object_tracks_.size(); }
 
   /// Forgets the past: the next frame counts as the first.
   void reset();
@@ -64,15 +70,17 @@ class SceneMotion {
  private:
   struct Track {
     glm::dmat4 now{1}, before{1};
+    std::uint64_t listed = 0;  ///< frame that listed it last, counted by `frames_`
   };
+  void forget_oldest();
   /// Returns whether something was placed for the first time.
-  static bool follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
-                     bool first);
+  bool follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved, bool first);
   ObjectMotion<float> compose(const Track& track) const;
 
   std::map<std::uint32_t, Track> object_tracks_, light_tracks_;
   ViewGeometry view_, previous_view_;
   glm::dmat4 view_matrix_{1}, clip_matrix_{1};
+  std::uint64_t frames_ = 0;
   bool camera_at_rest_ = false, geometry_at_rest_ = false, has_past_ = false, appeared_ = false;
   std::vector<std::uint32_t> slot_ids_;  ///< sorted; slot k + 1 belongs to slot_ids_[k]
   std::vector<ObjectMotion<float>> objects_;

@@ -29,6 +29,23 @@ Image scaled(const Image& image, double factor) {
   return out;
 }
 
+Image image_of(const Plane& plane) {
+  Image out(plane.width(), plane.height(), plane.channels());
+  for_each_pixel(out.width(), out.height(), [&](int x, int y) {
+    for (int c = 0; c < out.channels(); ++c) out.at(x, y, c) = double{plane.channel(c).at(x, y)};
+  });
+  return out;
+}
+
+/// Each pixel of half size four times, `factor` times as large.
+Image repeated(const Image& half, const Surfaces& full, double factor) {
+  Image out(full.width, full.height, half.channels());
+  for_each_pixel(full.width, full.height, [&](int x, int y) {
+    for (int c = 0; c < out.channels(); ++c) out.at(x, y, c) = factor * half.at(x / 2, y / 2, c);
+  });
+  return out;
+}
+
 double mean_on_surfaces(const Surfaces& now, const Image& image) {
   double sum = 0, pixels = 0;
   for_each_pixel(now.width, now.height, [&](int x, int y) {
@@ -51,14 +68,14 @@ ComponentOracle::ComponentOracle(const DenoiserConfig& config, const Plan& plan,
                                  const Plan::Entry& entry)
     : config_(config),
       plan_(plan),
+      recipe_(plan.recipe_of(entry)),
       entry_(entry),
       visibility_(entry.component.kind == ComponentKind::kVisibility) {
-  if (entry.cones) cones_ = std::make_unique<Cones>(plan.recipe.indirect_basis);
+  if (entry.cones) cones_ = std::make_unique<Cones>(recipe_.indirect_basis);
 }
 
-ComponentOracle::Input ComponentOracle::input_of(const Frame& frame) const {
+ComponentOracle::Input ComponentOracle::input_of(const PlaneSet& planes) const {
   Input out;
-  const PlaneSet& planes = frame.planes;
   const std::uint32_t id = entry_.component.light;
   if (visibility_ && entry_.has_footprint)
     out.shadow.emplace(
@@ -85,37 +102,70 @@ Image ComponentOracle::field_of(const FrameView& view, const Input& input) const
 bool ComponentOracle::follows(const FrameView& view) const {
   if (!entry_.follows_effect || view.surface == nullptr) return false;
   // Where nothing moves, a reflection's relative vector is its surface's.
-  const bool relative = entry_.component.kind == ComponentKind::kGlossy &&
-                        plan_.recipe.glossy == GlossyVectors::kRelative;
+  const bool relative =
+      entry_.component.kind == ComponentKind::kGlossy && recipe_.glossy == GlossyVectors::kRelative;
   return !(relative && view.scene.at_rest());
 }
 
 Past ComponentOracle::effect_past(const FrameView& view, const Input& input, const Image& field,
                                   const Statistics& statistics, const FrameKey& key) const {
   if (visibility_)
-    return shadow_past(view, *input.shadow, plan_.recipe.shadow == ShadowVectors::kPaper, field,
+    return shadow_past(view, *input.shadow, recipe_.shadow == ShadowVectors::kPaper, field,
                        statistics);
   if (entry_.component.kind == ComponentKind::kIndirect) return dual_past(view);
-  const GlossyRule rule = plan_.recipe.glossy == GlossyVectors::kSpecular ? GlossyRule::kSpecular
-                          : plan_.recipe.glossy == GlossyVectors::kStochastic
-                              ? GlossyRule::kStochastic
-                              : GlossyRule::kRelative;
+  const GlossyRule rule = recipe_.glossy == GlossyVectors::kSpecular     ? GlossyRule::kSpecular
+                          : recipe_.glossy == GlossyVectors::kStochastic ? GlossyRule::kStochastic
+                                                                         : GlossyRule::kRelative;
   return reflection_past(view, *input.reflection, rule, key);
 }
 
 ComponentOracle::Result ComponentOracle::run(const FrameView& view, const Frame& frame) {
   Result out;
-  Image noisy = load_signal(frame.planes.at(component_plane(entry_.component)), out.repaired);
-  Input input = input_of(frame);
+  Samples samples(1);
+  samples[0].radiance =
+      load_signal(frame.planes.at(component_plane(entry_.component)), out.repaired);
+  if (cones_) samples[0].direction = image_of(frame.planes.at({PlaneKind::kIndirectDirection, {}}));
+  Image antilag;
+  if (entry_.gradients)
+    antilag = antilag_of(view.now, frame.planes.at({PlaneKind::kGradient, entry_.component}),
+                         recipe_.gradient_levels, out.repaired_gradients);
+  run_chain(view, frame.planes, {config_.seed, frame.index}, samples, nullptr,
+            entry_.gradients ? &antilag : nullptr, out);
+  return out;
+}
+
+ComponentOracle::Result ComponentOracle::run_halved(const HalfFrame& half, const Surfaces& full,
+                                                    const Frame& frame) {
+  Result out;
+  const Image noisy = load_signal(frame.planes.at(component_plane(entry_.component)), out.repaired);
+  Image directions;
+  if (cones_) directions = image_of(frame.planes.at({PlaneKind::kIndirectDirection, {}}));
+  Samples samples;
+  for (int k = 0; k < Quads::kPixels; ++k) {
+    DirectedSamples& pixel = samples.emplace_back();
+    pixel.radiance = pixel_of_quads(noisy, half.quads(), k);
+    if (cones_) pixel.direction = pixel_of_quads(directions, half.quads(), k);
+  }
+  const FrameView view = half.view();
+  run_chain(view, half.planes(), {config_.seed, frame.index}, samples, &half.quads(), nullptr, out);
+  out.filtered = upsample(full, view.now, out.filtered, noisy);
+  out.motion = repeated(out.motion, full, 2);
+  out.frames = repeated(out.frames, full, 1);
+  out.weight = repeated(out.weight, full, 1);
+  return out;
+}
+
+void ComponentOracle::run_chain(const FrameView& view, const PlaneSet& planes, const FrameKey& key,
+                                Samples& samples, const Quads* quads, const Image* antilag,
+                                Result& out) {
+  Input input = input_of(planes);
   if (input.shadow) input.shadow->places = view.scene.light(entry_.component.light);
-  const FrameKey key{config_.seed, frame.index};
   std::optional<Past> effect;
   if (cones_) {  // corrected along vectors that do not depend on samples
     if (follows(view)) effect = effect_past(view, input, {}, {}, key);
-    cones_->correct(view, effect ? &*effect : nullptr,
-                    frame.planes.at({PlaneKind::kIndirectDirection, {}}), plan_.recipe.cones,
-                    noisy);
+    cones_->correct(view, effect ? &*effect : nullptr, samples, recipe_.cones);
   }
+  const Image noisy = quads != nullptr ? mean_of_quads(samples, *quads) : samples[0].radiance;
   const Image field = field_of(view, input);
   const Statistics statistics = measure(view.now, noisy, field);
   if (follows(view) && !effect) effect = effect_past(view, input, field, statistics, key);
@@ -123,33 +173,33 @@ ComponentOracle::Result ComponentOracle::run(const FrameView& view, const Frame&
   Sources sources;
   if (plan_.history) sources.surface = view.surface;
   if (effect) sources.effect = &*effect;
-  Image antilag;
-  if (entry_.gradients) {
-    antilag = antilag_of(view.now, frame.planes.at({PlaneKind::kGradient, entry_.component}),
-                         plan_.recipe.gradient_levels, out.repaired_gradients);
-    if (sources.surface != nullptr) sources.antilag = &antilag;
-  }
+  if (sources.surface != nullptr) sources.antilag = antilag;
   Blended blended = blend(view, noisy, sources, statistics);
   history_ = std::move(blended.now);
-  const Image lit = lit_of(view, frame.planes);
-  const auto for_each_unlit = [&](const auto& body) {
-    if (lit)
-      for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
-        if (lit.at(x, y) == 0) body(x, y);
-      });
-  };
-  for_each_unlit(
-      [&](int x, int y) { history_.samples.at(x, y) = static_cast<double>(kUnlitSamples); });
-  out.filtered = filter(view, statistics);
-  for_each_unlit([&](int x, int y) {
-    history_.samples.at(x, y) = 0;
-    out.filtered.at(x, y) = noisy.at(x, y);
-  });
+  out.filtered = filter_lit(view, planes, noisy, statistics);
   out.motion = std::move(blended.motion);
   out.frames = std::move(blended.frames);
   out.weight = std::move(blended.weight);
   out.changed_share = blended.changed_share;
   out.mean_history_frames = mean_on_surfaces(view.now, history_.samples);
+}
+
+/// Filters the history. Where a light sends nothing, its visibility is passed through, and says
+/// next to nothing to its neighbours and nothing to later frames.
+Image ComponentOracle::filter_lit(const FrameView& view, const PlaneSet& planes, const Image& noisy,
+                                  const Statistics& statistics) {
+  const Image lit = lit_of(view, planes);
+  const auto for_each_unlit = [&](const auto& body) {
+    for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+      if (lit.at(x, y) == 0) body(x, y);
+    });
+  };
+  for_each_unlit([&](int x, int y) { history_.samples.at(x, y) = double{kUnlitSamples}; });
+  Image out = filter(view, statistics);
+  for_each_unlit([&](int x, int y) {
+    history_.samples.at(x, y) = 0;
+    out.at(x, y) = noisy.at(x, y);
+  });
   return out;
 }
 
@@ -179,15 +229,15 @@ Image ComponentOracle::lit_of(const FrameView& view, const PlaneSet& planes) con
 
 Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const Sources& sources,
                                const Statistics& statistics) const {
-  const Recipe& recipe = plan_.recipe;
-  if (recipe.blending != Blending::kExpectedError || sources.surface == nullptr) {
-    AccumulationRule rule = recipe.accumulation;
+  if (recipe_.blending != Blending::kExpectedError || sources.surface == nullptr) {
+    AccumulationRule rule = recipe_.accumulation;
     // For indirect light the surface's vector is the right one, and no fallback to be clamped.
     if (entry_.component.kind == ComponentKind::kIndirect &&
         rule.rectification == Rectification::kClampFallback)
       rule.rectification = Rectification::kNone;
-    Blended out = blend_exponentially(view.now, noisy, sources, rule, history_, recipe.svgf_filter);
-    if (recipe.blending == Blending::kExpectedError && !visibility_)
+    Blended out =
+        blend_exponentially(view.now, noisy, sources, rule, history_, recipe_.svgf_filter);
+    if (recipe_.blending == Blending::kExpectedError && !visibility_)
       out.now.residual = Image(view.now.width, view.now.height, 4);
     return out;
   }
@@ -197,10 +247,10 @@ Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const 
   const Image* footprint = window ? &window : nullptr;
   if (!visibility_)
     return blend_radiance(view.now, noisy, sources, footprint,
-                          entry_.component.kind == ComponentKind::kGlossy ? recipe.glossy_blend
-                                                                          : recipe.indirect_blend,
+                          entry_.component.kind == ComponentKind::kGlossy ? recipe_.glossy_blend
+                                                                          : recipe_.indirect_blend,
                           view.scene.at_rest(), history_);
-  ExpectedErrorRule rule = recipe.visibility_blend;
+  ExpectedErrorRule rule = recipe_.visibility_blend;
   // Where the light's shadows stand still, a change is one of the light.
   rule.change.noticed &=
       view.scene.geometry_at_rest() && view.scene.light(entry_.component.light).at_rest;
@@ -208,12 +258,11 @@ Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const 
 }
 
 Image ComponentOracle::filter(const FrameView& view, const Statistics& statistics) {
-  const Recipe& recipe = plan_.recipe;
   Image out =
-      recipe.svgf_filter
-          ? filter_by_variance(view.now, statistics, recipe.svgf_levels, history_)
+      recipe_.svgf_filter
+          ? filter_by_variance(view.now, statistics, recipe_.svgf_levels, history_)
           : filter_by_samples(view.now, history_, statistics,
-                              visibility_ ? recipe.visibility_filter : recipe.radiance_filter);
+                              visibility_ ? recipe_.visibility_filter : recipe_.radiance_filter);
   if (cones_)  // corrected samples may be negative, and so may what is left of few
     for_each_pixel(out.width(), out.height(), [&](int x, int y) {
       for (int c = 0; c < out.channels(); ++c) out.at(x, y, c) = std::max(out.at(x, y, c), 0.0);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/denoiser/plan.h"
 #include "core/frame/frame.h"
 #include "core/history/glossy_history.h"
 #include "core/oracle/cones.h"
+#include "core/oracle/half_frame.h"
 #include "core/oracle/history.h"
 #include "core/oracle/statistics.h"
 
@@ -26,13 +28,19 @@ class ComponentOracle {
   /// Local statistics, the effect's vectors, blend with history, spatial filter. `frame` is as the
   /// client sent it.
   Result run(const FrameView& view, const Frame& frame);
+  /// The same at half resolution: results are of the frame's size.
+  Result run_halved(const HalfFrame& half, const Surfaces& full, const Frame& frame);
 
   const Plan::Entry& entry() const { return entry_; }
   std::size_t bytes() const;
 
  private:
   struct Input;
-  Input input_of(const Frame& frame) const;
+  using Samples = std::vector<DirectedSamples>;  ///< of each pixel, or of each one of the quads
+  /// The chain of either resolution, but for loading and repair of samples and gradients.
+  void run_chain(const FrameView& view, const PlaneSet& planes, const FrameKey& key,
+                 Samples& samples, const Quads* quads, const Image* antilag, Result& out);
+  Input input_of(const PlaneSet& planes) const;
   Image field_of(const FrameView& view, const Input& input) const;
   bool follows(const FrameView& view) const;
   Past effect_past(const FrameView& view, const Input& input, const Image& field,
@@ -40,10 +48,13 @@ class ComponentOracle {
   Blended blend(const FrameView& view, const Image& noisy, const Sources& sources,
                 const Statistics& statistics) const;
   Image filter(const FrameView& view, const Statistics& statistics);
+  Image filter_lit(const FrameView& view, const PlaneSet& planes, const Image& noisy,
+                   const Statistics& statistics);
   Image lit_of(const FrameView& view, const PlaneSet& planes) const;
 
   const DenoiserConfig& config_;
   const Plan& plan_;
+  Recipe recipe_;
   Plan::Entry entry_;
   bool visibility_;
   History history_;

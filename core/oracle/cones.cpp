@@ -18,9 +18,9 @@ double total(const double (&of)[kCones]) {
 }
 
 /// The cone of a sample's direction, or -1 if there is none above the surface.
-int cone_of(const Surfaces& now, const Plane& directions, int x, int y) {
-  const glm::dvec3 direction(directions.channel(0).at(x, y), directions.channel(1).at(x, y),
-                             directions.channel(2).at(x, y));
+int cone_of(const Surfaces& now, const Image& directions, int x, int y) {
+  const glm::dvec3 direction(directions.at(x, y, 0), directions.at(x, y, 1),
+                             directions.at(x, y, 2));
   if (!now.any(x, y)) return -1;
   const double above = glm::dot(direction, now.normal_at(x, y));
   if (!(above > 0) || !std::isfinite(above)) return -1;
@@ -36,8 +36,8 @@ glm::dvec3 hue_of(double luminance, const double (&chroma)[2]) {
 
 }  // namespace
 
-void Cones::correct(const FrameView& frame, const Past* effect, const Plane& directions,
-                    const ConeRule& rule, Image& noisy) {
+void Cones::correct(const FrameView& frame, const Past* effect, std::span<DirectedSamples> samples,
+                    const ConeRule& rule) {
   const Surfaces& now = frame.now;
   Image updated(now.width, now.height, channels());
   for_each_pixel(now.width, now.height, [&](int x, int y) {
@@ -45,13 +45,7 @@ void Cones::correct(const FrameView& frame, const Past* effect, const Plane& dir
     if (frame.surface != nullptr) taps = frame.surface->at(x, y);
     if (frame.surface != nullptr && !taps.any() && effect != nullptr) taps = effect->at(x, y);
     Pixel pixel = recall(frame, taps, x, y);
-    const int cone = cone_of(now, directions, x, y);
-    if (cone >= 0) {
-      const glm::dvec3 x_given(noisy.at(x, y, 0), noisy.at(x, y, 1), noisy.at(x, y, 2));
-      const glm::dvec3 off = excess(pixel, cone, rule);
-      learn(pixel, cone, x_given, rule);
-      for (int c = 0; c < 3; ++c) noisy.at(x, y, c) -= off[c];
-    }
+    for (DirectedSamples& each : samples) take(pixel, now, each, rule, x, y);
     int channel = 0;
     for (int c = 0; c < colours_; ++c)
       for (const double v : pixel.sum[c]) updated.at(x, y, channel++) = v;
@@ -61,6 +55,17 @@ void Cones::correct(const FrameView& frame, const Past* effect, const Plane& dir
   });
   const Image ones(now.width, now.height, 1, 1.0);
   kept_ = filter_pass(now, updated, ones, box_pass(1)).values;
+}
+
+void Cones::take(Pixel& pixel, const Surfaces& now, DirectedSamples& samples, const ConeRule& rule,
+                 int x, int y) const {
+  const int cone = cone_of(now, samples.direction, x, y);
+  if (cone < 0) return;
+  Image& noisy = samples.radiance;
+  const glm::dvec3 given(noisy.at(x, y, 0), noisy.at(x, y, 1), noisy.at(x, y, 2));
+  const glm::dvec3 off = excess(pixel, cone, rule);
+  learn(pixel, cone, given, rule);
+  for (int c = 0; c < 3; ++c) noisy.at(x, y, c) -= off[c];
 }
 
 Cones::Pixel Cones::recall(const FrameView& frame, const Taps& taps, int x, int y) const {

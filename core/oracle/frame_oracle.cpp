@@ -5,7 +5,6 @@
 #include <list>
 #include <optional>
 
-#include "core/frame/error.h"
 #include "core/oracle/composite.h"
 
 namespace holdfast::oracle {
@@ -35,12 +34,7 @@ void add_repairs(FrameReport& report, PlaneId plane, std::uint64_t values) {
 
 FrameOracle::FrameOracle(const DenoiserConfig& config, const Plan& plan)
     : config_(config), plan_(plan) {
-  for (const Plan::Entry& entry : plan.components) {
-    if (entry.half)
-      throw InputError("half resolution", "must be none with preset " + plan.preset.name,
-                       "of " + component_name(entry.component));
-    components_.emplace_back(config, plan, entry);
-  }
+  for (const Plan::Entry& entry : plan.components) components_.emplace_back(config, plan, entry);
 }
 
 Surfaces FrameOracle::load(const Frame& frame, FrameReport& report) const {
@@ -65,6 +59,10 @@ void FrameOracle::filter(const Frame& frame, bool has_past, PlaneSet& results, F
     view.surface = &*surface;
     timer.end("surface", 0);
   }
+  if (plan_.half.any) {
+    half_.advance(now, scene_, frame.planes, has_past);
+    timer.end("half", 0);
+  }
   const std::vector<Image> filtered = filter_components(view, frame, results, report, timer);
   Plane& out = results.add({PlaneKind::kComposite, {}}, config_.width, config_.height);
   write(composite(now, filtered, frame, timer), out);
@@ -79,7 +77,8 @@ std::vector<Image> FrameOracle::filter_components(const FrameView& view, const F
   std::vector<Image> filtered;
   for (ComponentOracle& oracle : components_) {
     const Component component = oracle.entry().component;
-    ComponentOracle::Result result = oracle.run(view, frame);
+    ComponentOracle::Result result =
+        oracle.entry().half ? oracle.run_halved(half_, view.now, frame) : oracle.run(view, frame);
     add_repairs(report, component_plane(component), result.repaired);
     add_repairs(report, {PlaneKind::kGradient, component}, result.repaired_gradients);
     if (result.changed_share > 0) report.changes.push_back({component, result.changed_share});
@@ -131,9 +130,7 @@ Image FrameOracle::composite(const Surfaces& now, const std::vector<Image>& filt
 }
 
 std::size_t FrameOracle::bytes() const {
-  std::size_t sum = previous_.depth.bytes() + previous_.normal.bytes() +
-                    previous_.ids.size() * sizeof(std::uint32_t) + previous_.roughness.bytes() +
-                    previous_.motion.bytes();
+  std::size_t sum = previous_.bytes() + half_.bytes();
   for (const ComponentOracle& component : components_) sum += component.bytes();
   return sum;
 }

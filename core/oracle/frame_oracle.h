@@ -7,12 +7,11 @@
 
 namespace holdfast::oracle {
 
-/// The whole frame of any recipe, at full resolution; keeps history of its own. What the preset
-/// `reference` runs in place of the kernels.
+/// The whole frame of any recipe and plan; keeps history of its own. What the preset `reference`
+/// runs in place of the kernels.
 class FrameOracle final : public FrameFilter {
  public:
-  /// `config` and `plan` must outlive the oracle. Throws InputError for components at half
-  /// resolution, which the oracle does not know.
+  /// `config` and `plan` must outlive the oracle.
   FrameOracle(const DenoiserConfig& config, const Plan& plan);
 
   void filter(const Frame& frame, bool has_past, PlaneSet& results, FrameReport& report,
@@ -30,6 +29,7 @@ class FrameOracle final : public FrameFilter {
   const Plan& plan_;
   Scene scene_;
   Surfaces previous_;
+  HalfFrame half_;
   std::vector<ComponentOracle> components_;
 };
 

@@ -59,6 +59,13 @@ Motion Scene::motion_of(const Track& track) const {
   return motion;
 }
 
+Scene Scene::halved() const {
+  Scene half = *this;
+  half.view_ = view_.halved();
+  half.previous_view_ = previous_view_.halved();
+  return half;
+}
+
 const Motion& Scene::motion(std::uint32_t object_id) const {
   const auto found = moving_.find(object_id);
   return found == moving_.end() ? static_ : found->second;

@@ -41,6 +41,9 @@ class Scene {
   /// Takes the next frame, whose matrices have been checked.
   void advance(const Frame& frame, int width, int height);
 
+  /// The same motion, seen by cameras with half the pixels.
+  Scene halved() const;
+
   const ViewGeometry& view() const { return view_; }
   const ViewGeometry& previous_view() const { return previous_view_; }
   /// Objects that are in no table, or have not moved, are the static world.

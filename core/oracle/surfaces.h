@@ -35,6 +35,10 @@ struct Surfaces {
   glm::dvec3 position(int x, int y) const {
     return view.rays.position(x + 0.5, y + 0.5, depth.at(x, y));
   }
+  std::size_t bytes() const {
+    return depth.bytes() + normal.bytes() + ids.size() * sizeof(std::uint32_t) + roughness.bytes() +
+           motion.bytes();
+  }
   /// Width of a pixel at a planar depth, metres.
   double pixel_width(double planar_depth) const {
     return view.pixel_angle * (view.rays.near_weight + view.rays.far_weight * planar_depth);

@@ -30,7 +30,8 @@ struct HalfGrid {
 /// Chooses each quad's representative: of the pixels on a surface the one whose surface (same id,
 /// normals within 26 degrees, planes within 2 px) most pixels of the quad show; of equals the
 /// nearest to the camera, so that what is thin and near survives. Those pixels share the mean in
-/// equal parts. A quad without surface is represented by its first pixel.
+/// equal parts. A quad without surface is represented by its first pixel, one of a single surface
+/// by the first that all others agree with.
 void choose_representatives(const Guides& full, HalfGrid& grid);
 
 /// The representatives' guides into `half`, whose view and rays are set by the caller to the full

@@ -122,22 +122,28 @@ HOLDFAST_INLINE void upsample3_body(const UpsampleBlock& a) { upsample_block<3>(
 HOLDFAST_KERNEL(upsample1, UpsampleBlock)
 HOLDFAST_KERNEL(upsample3, UpsampleBlock)
 
-/// How unlike half pixel (qx, qy) is what pixel (x, y) shows; infinite without surface.
-float difference(const Upsample& pass, int x, int y, int qx, int qy) {
-  constexpr float kForeign = 1e6f;  // any surface of the same id comes first
+/// How unlike half pixel (qx, qy), which shows a surface, is what pixel (x, y) shows.
+struct Unlike {
+  bool foreign = true;  ///< of another id: more unlike than anything of the same
+  float by = std::numeric_limits<float>::infinity();
+  bool operator<(const Unlike& other) const {
+    return foreign != other.foreign ? other.foreign : by < other.by;
+  }
+};
+
+Unlike difference(const Upsample& pass, int x, int y, int qx, int qy) {
   const Guides& full = *pass.full;
   const Guides& half = *pass.half;
-  if (!(half.depth().at(qx, qy) > 0.0f)) return std::numeric_limits<float>::infinity();
   const glm::vec3 n = full.normal_at(x, y);
   const float width_m = static_cast<float>(full.view.pixel_angle) *
                         (full.rays.near_weight + full.rays.far_weight * full.depth().at(x, y));
   const float distance = glm::dot(n, half.position_at(qx, qy) - full.position_at(x, y));
   const float dx = static_cast<float>(qx) + 0.5f - 0.5f * (static_cast<float>(x) + 0.5f);
   const float dy = static_cast<float>(qy) + 0.5f - 0.5f * (static_cast<float>(y) + 0.5f);
-  return std::abs(distance) / (kTolerancePx * width_m) +
-         kNormalPower * std::max(1.0f - glm::dot(n, half.normal_at(qx, qy)), 0.0f) +
-         0.5f * (dx * dx + dy * dy) +
-         (full.id[0].at(x, y) == half.id[0].at(qx, qy) ? 0.0f : kForeign);
+  return {full.id[0].at(x, y) != half.id[0].at(qx, qy),
+          std::abs(distance) / (kTolerancePx * width_m) +
+              kNormalPower * std::max(1.0f - glm::dot(n, half.normal_at(qx, qy)), 0.0f) +
+              0.5f * (dx * dx + dy * dy)};
 }
 
 void take_most_similar(const Upsample& pass, int x, int y) {
@@ -145,10 +151,11 @@ void take_most_similar(const Upsample& pass, int x, int y) {
   const int last_x = pass.half->view.width - 1, last_y = pass.half->view.height - 1;
   const int own_x = x / 2, own_y = y / 2;
   int best_x = own_x, best_y = own_y;
-  float least = std::numeric_limits<float>::infinity();
+  Unlike least;
   for (int qy = std::max(own_y - kReach, 0); qy <= std::min(own_y + kReach, last_y); ++qy)
     for (int qx = std::max(own_x - kReach, 0); qx <= std::min(own_x + kReach, last_x); ++qx) {
-      const float d = difference(pass, x, y, qx, qy);
+      if (!(pass.half->depth().at(qx, qy) > 0.0f)) continue;
+      const Unlike d = difference(pass, x, y, qx, qy);
       if (!(d < least)) continue;
       least = d;
       best_x = qx;

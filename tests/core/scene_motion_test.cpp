@@ -47,6 +47,38 @@ TEST(SceneMotion, StaticWorldUnderAStillCameraIsAtRest) {
   EXPECT_NEAR(pixel.y, now.y, 1e-4f);
 }
 
+TEST(SceneMotion, RemembersOnlySoManyObjectsAndForgetsThoseListedLongestAgo) {
+  constexpr std::uint32_t kEach = 20000, kFrames = 12, kFaithful = 4000000000u;
+  const Camera camera = test::perspective_camera(kWidth, kHeight);
+  SceneMotion scene;
+  for (std::uint32_t t = 0; t < kFrames; ++t) {
+    TransformTable objects;
+    for (std::uint32_t k = 0; k < kEach; ++k) objects[1 + t * kEach + k] = glm::dmat4(1);
+    objects[kFaithful] = glm::translate(glm::dmat4(1), {0.1 * t, 0.0, 0.0});
+    advance(scene, frame_of(camera, objects));
+    EXPECT_LE(scene.remembered_objects(), SceneMotion::kMostObjects);
+    if (t > 0) EXPECT_EQ(scene.slot_count(), 2) << "what is listed in every frame is known";
+  }
+  EXPECT_GT(scene.remembered_objects(), SceneMotion::kMostObjects / 2);
+  // The last frame's objects are known, so that they can move; the first one's are new again.
+  const std::uint32_t known = kFrames * kEach, forgotten = 1;
+  const glm::dmat4 elsewhere = glm::translate(glm::dmat4(1), {0.0, 1.0, 0.0});
+  advance(scene, frame_of(camera, {{known, elsewhere}, {forgotten, elsewhere}}));
+  EXPECT_NE(scene.slot_of(known), 0);
+  EXPECT_EQ(scene.slot_of(forgotten), 0);
+}
+
+TEST(SceneMotion, AFrameMayListMoreObjectsThanAreRemembered) {
+  const Camera camera = test::perspective_camera(kWidth, kHeight);
+  TransformTable objects;
+  for (std::uint32_t k = 1; k <= SceneMotion::kMostObjects + 10; ++k) objects[k] = glm::dmat4(1);
+  SceneMotion scene;
+  advance(scene, frame_of(camera, objects));
+  for (auto& [id, matrix] : objects) matrix[3].x = 1;
+  advance(scene, frame_of(camera, objects));
+  EXPECT_EQ(scene.slot_count(), static_cast<int>(objects.size()) + 1);
+}
+
 TEST(SceneMotion, MotionIsPreviousMinusCurrent) {
   SceneMotion scene;
   advance(scene, frame_of(test::perspective_camera(kWidth, kHeight, {0, 0, 0})));

@@ -195,6 +195,19 @@ TEST(Upsample, APixelThatNoNeighbourResemblesTakesTheMostSimilarNearby) {
   EXPECT_NEAR(world.out[0].at(5, 5), 0.25f, 1e-6f);
 }
 
+// Beside a large penalty for another id, floats would forget which of two is nearer.
+TEST(Upsample, WithoutItsLikeAPixelTakesTheNearestOfTheOthers) {
+  const int width = 12, height = 12;
+  test::Random random(36);
+  Guides guides = test::wall(test::orthographic_camera(width, height), width, height);
+  test::set_pixel(guides, 5, 5, 5.0f, {0, 0, 1}, 3);
+  World world(std::move(guides), random);
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 6; ++x) world.in[0].at(x, y) = x == 2 && y == 2 ? 0.75f : 0.25f;
+  world.run(1);
+  EXPECT_EQ(world.out[0].at(5, 5), 0.75f);
+}
+
 TEST(Upsample, ALinearSignalOnAFlatSurfaceStaysLinearInside) {
   const int width = 20, height = 12;
   test::Random random(35);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tests/core/expect_input_error.h"
+#include "core/frame/error.h"
 #include "tests/oracle/within_budget.h"
 
 namespace holdfast {
@@ -63,10 +63,17 @@ TEST_F(Door, ResetAndCutForgetHistory) {
   EXPECT_GT(difference(with_history, after_cut), 1e-3);
 }
 
-TEST_F(Door, HalfResolutionIsRefusedByName) {
-  config.half_resolution = {"indirect"};
-  test::expect_input_error([&] { Denoiser denoiser(config); }, "half resolution",
-                           "none with preset reference", "of indirect");
+TEST_F(Door, ReferenceFiltersAtHalfResolutionWhatASessionAsksFor) {
+  config.half_resolution = {"indirect", "glossy"};
+  Denoiser denoiser(config);
+  const std::size_t before = denoiser.memory_bytes();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const PlaneSet results = filtered(denoiser, k);
+    EXPECT_EQ(results.size(), result_planes(config).size());
+    EXPECT_EQ(reports[k].non_finite_out, 0u);
+  }
+  EXPECT_EQ(reports[1].stages[2].stage, "half");
+  EXPECT_GT(denoiser.memory_bytes(), before);
 }
 
 TEST_F(Door, ARefusedFrameLeavesHistoryUntouched) {

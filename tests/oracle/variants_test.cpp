@@ -4,8 +4,6 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "core/denoiser/plan.h"
-#include "core/oracle/frame_oracle.h"
 #include "tests/core/isa_guard.h"
 #include "tests/oracle/within_budget.h"
 
@@ -26,7 +24,7 @@ TEST(Variants, EveryInstructionSetAndNumberOfThreadsAgreesWithTheOracle) {
   OracleScene scene = moving_scene(64, 48, 4);
   for (const char* recipe : kRecipes) {
     scene.config.recipe = recipe;
-    const Results doubles = filter_frames(scene.config, "reference", scene.frames);
+    const Results doubles = filter_by_oracle(scene.config, "balanced", scene.frames);
     for (const Isa isa : available_isas())
       for (const int threads : {1, 4}) {
         SCOPED_TRACE(std::string(recipe) + " " + std::string(isa_name(isa)) + " on " +
@@ -46,7 +44,7 @@ TEST(Variants, ErrorsStayWithinTheBudgetOverManyFrames) {
     SCOPED_TRACE(recipe);
     scene.config.recipe = recipe;
     test::expect_within_budget(filter_frames(scene.config, "balanced", scene.frames),
-                               filter_frames(scene.config, "reference", scene.frames));
+                               filter_by_oracle(scene.config, "balanced", scene.frames));
   }
 }
 
@@ -56,23 +54,8 @@ TEST(Variants, EveryBasisOfIndirectLightAgreesWithTheOracle) {
     SCOPED_TRACE(basis);
     scene.config.indirect_basis = basis;
     test::expect_within_budget(filter_frames(scene.config, "accurate", scene.frames),
-                               filter_frames(scene.config, "reference", scene.frames));
+                               filter_by_oracle(scene.config, "accurate", scene.frames));
   }
-}
-
-/// What the oracle makes of a plan that no configuration with preset `reference` leads to.
-Results by_plan(const DenoiserConfig& given, const std::vector<Frame>& frames) {
-  DenoiserConfig config = given;
-  config.debug_planes = true;
-  const Plan plan = Plan::make(config);
-  oracle::FrameOracle oracle(config, plan);
-  Results results(frames.size());
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    FrameReport report;
-    StageTimer timer(report.stages);
-    oracle.filter(frames[k], k > 0 && plan.history, results[k], report, timer);
-  }
-  return results;
 }
 
 TEST(Variants, TheNarrowKernelAgreesWithTheOracle) {
@@ -83,7 +66,7 @@ TEST(Variants, TheNarrowKernelAgreesWithTheOracle) {
     SCOPED_TRACE(recipe);
     scene.config.recipe = recipe;
     test::expect_within_budget(filter_frames(scene.config, "fast", scene.frames),
-                               by_plan(scene.config, scene.frames));
+                               filter_by_oracle(scene.config, "fast", scene.frames));
   }
 }
 
@@ -99,7 +82,7 @@ TEST(Variants, EveryShapeOfLightAgreesWithTheOracle) {
     for (const char* recipe : {"reliable", "paper"}) {
       config.recipe = recipe;
       test::expect_within_budget(filter_frames(config, "balanced", frames),
-                                 filter_frames(config, "reference", frames));
+                                 filter_by_oracle(config, "balanced", frames));
     }
   }
 }

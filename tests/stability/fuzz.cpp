@@ -12,7 +12,8 @@ namespace {
 constexpr int kMostFrames = 6;
 
 std::string text_of(const DenoiserConfig& config) {
-  return config.recipe + " " + std::to_string(config.width) + "x" + std::to_string(config.height);
+  return config.recipe + " " + config.preset + " " + std::to_string(config.width) + "x" +
+         std::to_string(config.height);
 }
 
 /// What is wrong with the results of a frame that was accepted; empty if nothing is.
@@ -53,6 +54,15 @@ std::string filter_one(Denoiser& denoiser, const Frame& frame, FuzzOutcome& outc
   return problem_of(denoiser.config(), report, results);
 }
 
+/// To any other; to and from the oracle it is refused.
+void change_preset(Denoiser& denoiser, Random& random) {
+  try {
+    denoiser.set_preset(random_preset(random));
+  } catch (const InputError&) {
+    return;
+  }
+}
+
 }  // namespace
 
 FuzzOutcome fuzz_session(std::uint32_t seed) {
@@ -67,6 +77,7 @@ FuzzOutcome fuzz_session(std::uint32_t seed) {
     for (; at < kMostFrames && outcome.problem.empty(); ++at) {
       const Frame frame = random_frame(config, random, index);
       if (random.uniform() < 0.03) denoiser.reset();
+      if (random.uniform() < 0.1) change_preset(denoiser, random);
       outcome.problem = filter_one(denoiser, frame, outcome);
     }
   } catch (const InputError& error) {

@@ -5,6 +5,9 @@
 
 namespace holdfast::test {
 
+/// The name of a preset.
+std::string random_preset(Random& random);
+
 /// A configuration, mostly one that is accepted.
 DenoiserConfig random_config(Random& random);
 

@@ -102,6 +102,31 @@ TEST_P(Invariance, OfAnObjectThatIsNotSeen) {
   EXPECT_EQ(relative_difference(filter_world(changed), ordinary), 0);
 }
 
+/// Mean of a channel over an image.
+double mean_of(const Plane& plane, int c) {
+  double sum = 0;
+  for (int y = 0; y < plane.height(); ++y)
+    for (int x = 0; x < plane.width(); ++x) sum += double{plane.channel(c).at(x, y)};
+  return sum / (double{plane.width()} * plane.height());
+}
+
+// With four times the samples of the same content, less noise is left and the light is the same.
+TEST_P(Invariance, OfTheResolutionButForNoise) {
+  World changed = world();
+  const Outcome ordinary = filter_world(changed);
+  const double noise = noise_left(changed);
+  changed.width *= 2;
+  changed.height *= 2;
+  const Outcome fine = filter_world(changed);
+  EXPECT_LE(noise_left(changed), 1.1 * noise);
+  for (const Plane& plane : ordinary.results.back())
+    for (int c = 0; c < plane.channels(); ++c) {
+      const double mean = mean_of(plane, c);
+      EXPECT_NEAR(mean_of(fine.results.back().at(plane.id()), c), mean, 0.05 * mean)
+          << plane_name(plane.id());
+    }
+}
+
 TEST_P(Invariance, OfThreadsAndOfWhatElseRunsOnThem) {
   World changed = world();
   changed.height = 41;  // several tasks of rows, the last one short
