@@ -8,6 +8,7 @@
 #include "core/denoiser/traffic.h"
 #include "core/history/dual_history.h"
 #include "core/history/shadow_history.h"
+#include "core/history/unlit.h"
 #include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
 #include "core/kernels/random.h"
@@ -177,7 +178,13 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   blend(input, follows, scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
+  if (input.unshadowed != nullptr)
+    set_unlit(*input.unshadowed, kUnlitSamples, history_[now_].samples());
   filter(input, scratch, out);
+  if (input.unshadowed != nullptr) {
+    set_unlit(*input.unshadowed, 0.0f, history_[now_].samples());
+    pass_unlit(*input.unshadowed, std::as_const(scratch.noisy)[0], out.channel(0));
+  }
   input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
   HistoryRoom& histories = room(scratch);
   count_history(input.frames.now, histories.now);

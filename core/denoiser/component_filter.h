@@ -58,8 +58,9 @@ struct ComponentInput {
   const SurfaceHistory* surface = nullptr;  ///< null: there is no frame before
   const Light* light = nullptr;             ///< of a visibility with blocker planes, else null
   BlockerPlanes blockers = {};
-  StageTimer& timer;              ///< told of each stage that ends
-  GlossyPlanes reflections = {};  ///< of a glossy component that follows them
+  const Plane* unshadowed = nullptr;  ///< light of a visibility without shadows; null: not known
+  StageTimer& timer;                  ///< told of each stage that ends
+  GlossyPlanes reflections = {};      ///< of a glossy component that follows them
   FrameKey key = {};
   std::span<const ConeSamples> cone_samples = {};  ///< of a component kept by cones: one a pixel,
                                                    ///< Scratch::noisy, or, with `quads`, four

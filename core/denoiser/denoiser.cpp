@@ -109,16 +109,16 @@ class Denoiser::Impl {
       half.advance(guides[now], scene, frame.planes, has_past);
       timer.end("half", 16);
     }
+    if (!plan.shaded_lights.empty()) {
+      shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
+      timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
+    }
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
     for (std::size_t k = 0; k < filters.size(); ++k) {
       timer.enter(component_name(filters[k].component()));
       run_component(frame, frames, plan.components[k], filters[k], results, report, timer);
     }
     timer.enter("");
-    if (!plan.shaded_lights.empty()) {
-      shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
-      timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
-    }
     report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
     timer.end("composite", composite_channels(frame.planes));
   }
@@ -194,6 +194,11 @@ class Denoiser::Impl {
       const PlaneId gradient{PlaneKind::kGradient, entry.component};
       count_repairs(report, gradient,
                     load_gradients(frame.planes.at(gradient), kLargestRadiance, scratch.gradients));
+    }
+    if (entry.component.kind == ComponentKind::kVisibility) {
+      const auto unshadowed = PlaneId::of_light(PlaneKind::kUnshadowed, entry.component.light);
+      input.unshadowed = frame.planes.find(unshadowed);
+      if (input.unshadowed == nullptr) input.unshadowed = shaded.find(unshadowed);
     }
     if (entry.component.kind == ComponentKind::kVisibility && entry.has_footprint) {
       const std::uint32_t light = entry.component.light;

@@ -9,14 +9,14 @@ namespace holdfast {
 /// Constants of the blend of radiance by expected error. Thresholds are in variances of the
 /// difference that they are held against. All ours; tuned on occluder, glossy-floor and static.
 struct RadianceBlendRule {
-  bool effect_substitutes = false;      ///< the effect's history stands in only where the surface
-                                        ///< has none, rather than beside it
-  int window_step = 2;                  ///< window of a difference: 3 + 2 step pixels wide
-  float sudden_threshold = 2.0f;        ///< of this frame's difference, taken for noise below
-  float noise_threshold = 1.0f;         ///< of the lasting difference, likewise
-  float rest_sudden_threshold = 60.0f;  ///< the same where nothing in the scene moves: there is
-  float rest_threshold = 30.0f;         ///< little reason to expect bias
-  float residual_beta = 0.2f;           ///< weight of this frame in the lasting difference, 0..1
+  bool effect_substitutes = false;       ///< the effect's history stands in only where the surface
+                                         ///< has none, rather than beside it
+  int window_step = 2;                   ///< window of a difference: 3 + 2 step pixels wide
+  float sudden_threshold = 2.0f;         ///< of this frame's difference, taken for noise below
+  float noise_threshold = 1.0f;          ///< of the lasting difference, likewise
+  float rest_sudden_threshold = 300.0f;  ///< the same where nothing in the scene moves: there is
+  float rest_threshold = 300.0f;         ///< little reason to expect bias
+  float residual_beta = 0.2f;            ///< weight of this frame in the lasting difference, 0..1
   float spatial_samples =
       40.0f;                   ///< samples that the spatial filter adds: noise averages, bias not
   float most_samples = 64.0f;  ///< cap of the samples credited to history

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/history/unlit.h"
 #include "core/oracle/antilag.h"
 #include "core/oracle/candidates.h"
+#include "core/oracle/composite.h"
 #include "core/oracle/dual_past.h"
 #include "core/oracle/exponential.h"
 #include "core/oracle/reflections.h"
@@ -129,13 +131,50 @@ ComponentOracle::Result ComponentOracle::run(const FrameView& view, const Frame&
   }
   Blended blended = blend(view, noisy, sources, statistics);
   history_ = std::move(blended.now);
+  const Image lit = lit_of(view, frame.planes);
+  const auto for_each_unlit = [&](const auto& body) {
+    if (lit)
+      for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+        if (lit.at(x, y) == 0) body(x, y);
+      });
+  };
+  for_each_unlit(
+      [&](int x, int y) { history_.samples.at(x, y) = static_cast<double>(kUnlitSamples); });
   out.filtered = filter(view, statistics);
+  for_each_unlit([&](int x, int y) {
+    history_.samples.at(x, y) = 0;
+    out.filtered.at(x, y) = noisy.at(x, y);
+  });
   out.motion = std::move(blended.motion);
   out.frames = std::move(blended.frames);
   out.weight = std::move(blended.weight);
   out.changed_share = blended.changed_share;
   out.mean_history_frames = mean_on_surfaces(view.now, history_.samples);
   return out;
+}
+
+/// 1 where the light reaches the surface; empty: not known.
+Image ComponentOracle::lit_of(const FrameView& view, const PlaneSet& planes) const {
+  if (!visibility_) return {};
+  const std::uint32_t id = entry_.component.light;
+  const auto make = [&](const auto& value_at) {
+    Image lit(view.now.width, view.now.height, 1);
+    for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+      for (int c = 0; c < 3; ++c)
+        if (!(value_at(x, y, c) <= 0.0)) lit.at(x, y) = 1;
+    });
+    return lit;
+  };
+  if (const Plane* given = planes.find(PlaneId::of_light(PlaneKind::kUnshadowed, id)))
+    return make(
+        [&](int x, int y, int c) { return static_cast<double>(given->channel(c).at(x, y)); });
+  for (const Light& light : config_.lights) {
+    const auto& shaded = plan_.shaded_lights;
+    if (light.id != id || std::find(shaded.begin(), shaded.end(), id) == shaded.end()) continue;
+    const Image own = shade(view.now, light, view.scene.light(id), plan_.shaded_lobe, planes);
+    return make([&](int x, int y, int c) { return own.at(x, y, c); });
+  }
+  return {};
 }
 
 Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const Sources& sources,

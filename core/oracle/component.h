@@ -40,6 +40,7 @@ class ComponentOracle {
   Blended blend(const FrameView& view, const Image& noisy, const Sources& sources,
                 const Statistics& statistics) const;
   Image filter(const FrameView& view, const Statistics& statistics);
+  Image lit_of(const FrameView& view, const PlaneSet& planes) const;
 
   const DenoiserConfig& config_;
   const Plan& plan_;

@@ -42,6 +42,63 @@ TEST(Denoiser, ResultsStayInTheRangeOfTheirInputsUnderEveryRecipe) {
   }
 }
 
+// The light turns to a wall that it did not reach, and there the wall is in shadow: that it counted
+// as visible before must not brighten the shadow.
+TEST(Denoiser, WhereALightDidNotReachThereIsNoHistoryOfItsVisibility) {
+  const PlaneId visibility = test::of_light(PlaneKind::kVisibility);
+  const PlaneId unshadowed = test::of_light(PlaneKind::kUnshadowed);
+  for (const std::string& recipe : recipe_names()) {
+    DenoiserConfig config = test::full_config();
+    config.recipe = recipe;
+    Denoiser denoiser(config);
+    PlaneSet results;
+    for (int index = 0; index < 6; ++index) {
+      Frame frame = test::noisy_frame(config, index);
+      const bool reached = index == 5;
+      test::fill(frame.planes.find(visibility)->channel(0), reached ? 0.0f : 1.0f);
+      for (int c = 0; c < 3; ++c)
+        test::fill(frame.planes.find(unshadowed)->channel(c), reached ? 1.0f : 0.0f);
+      denoiser.filter(frame, results);
+    }
+    for (int y = 3; y < config.height; ++y)
+      for (int x = 0; x < config.width; ++x)
+        ASSERT_EQ(results.at(visibility).channel(0).at(x, y), 0.0f)
+            << recipe << " at " << x << ", " << y;
+  }
+}
+
+TEST(Denoiser, WhatIsSentWhereALightDoesNotReachStaysThereAndDoesNotBrightenShadows) {
+  const PlaneId visibility = test::of_light(PlaneKind::kVisibility);
+  const PlaneId unshadowed = test::of_light(PlaneKind::kUnshadowed);
+  for (const char* recipe : {"spatial", "paper", "reliable"}) {
+    DenoiserConfig config = test::full_config();
+    config.recipe = recipe;
+    Denoiser denoiser(config);
+    PlaneSet results;
+    const auto reached = [&](int x) { return x < config.width / 2; };
+    for (int index = 0; index < 6; ++index) {
+      Frame frame = test::noisy_frame(config, index);
+      for (int y = 0; y < config.height; ++y)
+        for (int x = 0; x < config.width; ++x) {
+          frame.planes.find(visibility)->channel(0).at(x, y) = reached(x) ? 0.0f : 1.0f;
+          for (int c = 0; c < 3; ++c)
+            frame.planes.find(unshadowed)->channel(c).at(x, y) = reached(x) ? 1.0f : 0.0f;
+        }
+      denoiser.filter(frame, results);
+    }
+    float brightest = 0;
+    for (int y = 3; y < config.height; ++y)
+      for (int x = 0; x < config.width; ++x) {
+        const float result = results.at(visibility).channel(0).at(x, y);
+        if (reached(x))
+          brightest = std::max(brightest, result);
+        else
+          ASSERT_EQ(result, 1.0f) << recipe << " at " << x << ", " << y;
+      }
+    EXPECT_LT(brightest, 0.03f) << recipe;
+  }
+}
+
 TEST(Denoiser, ForeignPlanesAmongTheResultsDoNotEnterTheComposite) {
   const DenoiserConfig full = test::full_config(), shadow = test::shadow_config();
   Denoiser first(full), second(shadow), fresh(shadow);
