@@ -131,6 +131,7 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   core.preset = checked_name("preset", request.preset(), preset_names(), core.preset);
   core.indirect_basis = request.indirect_basis();
   core.half_resolution.assign(request.half_resolution().begin(), request.half_resolution().end());
+  core.history = request.history();
   core.seed = request.seed();
   core.debug_planes = request.debug_planes();
   config.wire = checked_name("wire", request.wire(), wire::profile_names(), config.wire);

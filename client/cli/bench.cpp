@@ -35,6 +35,7 @@ Timing time_recipe(BenchFrames& frames, const BenchOptions& options, const std::
   config.preset = options.preset;
   config.indirect_basis = options.indirect_basis;
   config.half_resolution = options.half_resolution;
+  config.history = options.history;
   Denoiser denoiser(config);
   PlaneSet results;
   std::vector<FrameReport> reports;

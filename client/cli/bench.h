@@ -15,6 +15,7 @@ struct BenchOptions {
   std::string preset = "balanced";
   std::string indirect_basis;                ///< empty = the preset's
   std::vector<std::string> half_resolution;  ///< empty = the preset's
+  std::string history;                       ///< empty = the preset's
   int frames = 8;         ///< timed frames of each recipe, >= 1, after two of warm-up
   int threads = 0;        ///< that filter; 0 = one for each core
   bool reference = true;  ///< also time the scalar kernels

@@ -30,7 +30,8 @@ void add_bench(CLI::App& app) {
       .add_option("--recipes", options.recipes,
                   "Recipes, with commas between; stages are the first one's. Default: reliable")
       ->delimiter(',');
-  add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution);
+  add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution,
+                     options.history);
   command.add_option("--frames", options.frames, "Timed frames of each recipe, after two others")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

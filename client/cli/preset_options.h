@@ -7,10 +7,10 @@
 
 namespace holdfast::cli {
 
-/// Adds --preset, --indirect-basis and --half-resolution, which the commands that filter share.
-/// What they name is checked by the core, whose errors name what is accepted.
+/// Adds --preset, --indirect-basis, --half-resolution and --history, which the commands that filter
+/// share. What they name is checked by the core, whose errors name what is accepted.
 inline void add_preset_options(CLI::App& command, std::string& preset, std::string& indirect_basis,
-                               std::vector<std::string>& half_resolution) {
+                               std::vector<std::string>& half_resolution, std::string& history) {
   command
       .add_option("--preset", preset,
                   "fast, balanced, accurate or reference (double precision, slow)")
@@ -22,6 +22,9 @@ inline void add_preset_options(CLI::App& command, std::string& preset, std::stri
                   "components filtered at half resolution, with commas between: indirect, glossy; "
                   "or none; default: the preset's")
       ->delimiter(',');
+  command.add_option("--history", history,
+                     "how histories are kept: f16 (16 bits a signal, 8 a statistic) or f32; "
+                     "default: the preset's");
 }
 
 }  // namespace holdfast::cli

@@ -50,6 +50,7 @@ client::SessionOptions session_options(const SequenceReader& sequence, const Rep
   session.preset = options.preset;
   session.indirect_basis = options.indirect_basis;
   session.half_resolution = options.half_resolution;
+  session.history = options.history;
   session.wire = options.wire;
   session.budget_ms = options.budget_ms;
   session.reconnect_timeout = std::chrono::milliseconds(options.reconnect_ms);

@@ -24,6 +24,7 @@ struct ReplayOptions {
   std::string preset = "balanced";
   std::string indirect_basis;                ///< empty = the preset's
   std::vector<std::string> half_resolution;  ///< empty = the preset's
+  std::string history;                       ///< empty = the preset's
   std::string wire = "exact";
   double budget_ms = 0;             ///< wished time of a frame in the core; 0 = none
   std::vector<std::string> layers;  ///< result planes to write; empty = all

@@ -34,7 +34,8 @@ void add_replay(CLI::App& app) {
   CLI::Option* const server = command.add_option(
       "--server", options.server, "host:port or unix:PATH; without it, a server in this process");
   command.add_option("--recipe", options.recipe)->capture_default_str();
-  add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution);
+  add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution,
+                     options.history);
   command.add_option("--budget-ms", options.budget_ms, "time that a frame may take in the core")
       ->check(CLI::PositiveNumber);
   command.add_option("--layers", options.layers, "result planes to write, with commas between")

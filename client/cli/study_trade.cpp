@@ -75,6 +75,8 @@ class Candidate {
     }
     point.bytes_per_pixel =
         static_cast<double>(denoiser_.memory_bytes()) / (1.0 * config.width * config.height);
+    point.history_bytes_per_pixel =
+        static_cast<double>(denoiser_.history_bytes()) / (1.0 * config.width * config.height);
     point.composite_rmse = meters_.back().image().rmse;
     double log_rmse = 0, ssim = 0, count = 0;
     for (std::size_t k = 0; k + 1 < meters_.size(); ++k)

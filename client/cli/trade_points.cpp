@@ -20,6 +20,7 @@ TradeSetting setting_of(const DenoiserConfig& scene, const std::string& recipe,
   setting.point.basis = basis_name(parts.indirect_basis);
   setting.point.half_indirect = parts.half_indirect;
   setting.point.half_glossy = parts.half_glossy;
+  setting.point.history = history_name(parts.history);
   setting.config = scene;
   setting.config.recipe = recipe;
   return setting;
@@ -37,13 +38,15 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
   if (parts.half_indirect) config.half_resolution.push_back("indirect");
   if (parts.half_glossy) config.half_resolution.push_back("glossy");
   if (config.half_resolution.empty()) config.half_resolution.push_back("none");
+  config.history = history_name(parts.history);
   return setting;
 }
 
 bool same_parts(const measure::TradePoint& a, const measure::TradePoint& b) {
   return a.recipe == b.recipe && a.kernel_radius == b.kernel_radius &&
          a.more_levels == b.more_levels && a.basis == b.basis &&
-         a.half_indirect == b.half_indirect && a.half_glossy == b.half_glossy;
+         a.half_indirect == b.half_indirect && a.half_glossy == b.half_glossy &&
+         a.history == b.history;
 }
 
 void add_once(std::vector<TradeSetting>& settings, TradeSetting setting) {
@@ -71,6 +74,11 @@ void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
       other.more_levels += more;
       add_once(settings, free_setting(scene, recipe, other));
     }
+  for (Preset preset : all_presets()) {
+    preset.history =
+        preset.history == HistoryFormat::kPacked ? HistoryFormat::kFloat : HistoryFormat::kPacked;
+    add_once(settings, free_setting(scene, recipe, preset));
+  }
 }
 
 }  // namespace

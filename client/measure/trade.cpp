@@ -20,7 +20,8 @@ const TradePoint* same_setting(const TradeScene& scene, const TradePoint& point)
   for (const TradePoint& other : scene.points)
     if (other.recipe == point.recipe && other.kernel_radius == point.kernel_radius &&
         other.more_levels == point.more_levels && other.basis == point.basis &&
-        other.half_indirect == point.half_indirect && other.half_glossy == point.half_glossy)
+        other.half_indirect == point.half_indirect && other.half_glossy == point.half_glossy &&
+        other.history == point.history)
       return &other;
   return nullptr;
 }
@@ -36,8 +37,11 @@ std::string point_name(const TradePoint& point) {
   if (point.more_levels != 0)
     name += (point.more_levels > 0 ? " +" : " ") + std::to_string(point.more_levels) + " levels";
   if (!point.basis.empty()) name += " " + point.basis;
-  if (point.half_indirect && point.half_glossy) return name + " half";
-  return name + (point.half_indirect ? " half indirect" : point.half_glossy ? " half glossy" : "");
+  if (point.half_indirect && point.half_glossy)
+    name += " half";
+  else
+    name += point.half_indirect ? " half indirect" : point.half_glossy ? " half glossy" : "";
+  return point.history.empty() ? name : name + " " + point.history;
 }
 
 std::vector<std::size_t> pareto_front(const std::vector<TradePoint>& points,
@@ -74,7 +78,7 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
   for (const TradePoint& point : scenes.front().points) {
     TradePoint mean = point;
     mean.stages.clear();
-    double time = 0, error = 0, composite = 0, bytes = 0, ssim = 0;
+    double time = 0, error = 0, composite = 0, bytes = 0, history = 0, ssim = 0;
     bool everywhere = true;
     for (const TradeScene& scene : scenes) {
       const TradePoint* own = same_setting(scene, point);
@@ -84,6 +88,7 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
       error += std::log(own->rmse / balanced(scene)->rmse);
       composite += std::log(own->composite_rmse / balanced(scene)->composite_rmse);
       bytes += std::log(own->bytes_per_pixel);
+      history += own->history_bytes_per_pixel;
       ssim += own->ssim;
     }
     if (!everywhere) continue;
@@ -91,6 +96,7 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
     mean.rmse = std::exp(error / count);
     mean.composite_rmse = std::exp(composite / count);
     mean.bytes_per_pixel = std::exp(bytes / count);
+    mean.history_bytes_per_pixel = history / count;
     mean.ssim = ssim / count;
     all.points.push_back(mean);
   }

@@ -15,13 +15,16 @@ struct TradePoint {
   std::string basis;                 ///< of indirect light, as DenoiserConfig names it; the
                                      ///< preset's is that of recipes that keep cones
   bool half_indirect = false, half_glossy = false;
-  double ms = 0;  ///< processor time of a frame in the core, one thread; median over frames
+  std::string history;  ///< its precision, as DenoiserConfig names it; the preset's is that
+                        ///< of recipes that keep no moments
+  double ms = 0;        ///< processor time of a frame in the core, one thread; median over frames
   struct Stage {
     std::string name;  ///< "frame", or a component's
     double ms = 0;     ///< its share of `ms`
   };
   std::vector<Stage> stages;
-  double bytes_per_pixel = 0;  ///< held for history and scratch
+  double bytes_per_pixel = 0;          ///< held for history and scratch
+  double history_bytes_per_pixel = 0;  ///< of these, kept from frame to frame
   /// Geometric mean of the RMSE and mean of the SSIM over the filtered components, each judged over
   /// the image and over the effect. A composite would weigh components as the scene's materials
   /// happen to, and an image hides what moves.

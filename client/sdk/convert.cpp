@@ -58,6 +58,7 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
   request.set_preset(options.preset);
   request.set_indirect_basis(options.indirect_basis);
   for (const std::string& name : options.half_resolution) request.add_half_resolution(name);
+  request.set_history(options.history);
   request.set_seed(options.seed);
   request.set_debug_planes(options.debug_planes);
   request.set_budget_ms(options.budget_ms);

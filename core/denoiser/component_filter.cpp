@@ -65,8 +65,8 @@ void keep_positive(Plane& radiance) {
 
 /// What the rounding of a history depends on: the frame, and whose history it is.
 std::uint64_t rounding_key(const ComponentInput& input, Component component) {
-  return mix_bits(static_cast<std::uint64_t>(input.key.frame)) + (std::uint64_t{component.light} << 8) +
-         static_cast<std::uint64_t>(component.kind);
+  return mix_bits(static_cast<std::uint64_t>(input.key.frame)) +
+         (std::uint64_t{component.light} << 8) + static_cast<std::uint64_t>(component.kind);
 }
 
 /// A history that starts has met no later frame: without this, what was left here before a cut
@@ -154,8 +154,7 @@ ComponentFilter::ComponentFilter(const Plan& plan, const Plan::Entry& entry, int
       kept_(width, height, ComponentHistory(channels_, extras_).kept_as(), plan.history_format),
       row_samples_(static_cast<std::size_t>(height)),
       row_pixels_(static_cast<std::size_t>(height)) {
-  if (entry.cones)
-    cones_ = ConeHistory(width, height, recipe_.indirect_basis, plan.history_format);
+  if (entry.cones) cones_ = ConeHistory(width, height, recipe_.indirect_basis, plan.history_format);
 }
 
 void ComponentFilter::change(Recipe&& recipe, ConeHistory* cones) noexcept {

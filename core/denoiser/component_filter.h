@@ -35,7 +35,7 @@ struct Scratch {
   GradientScratch gradients;  ///< samples of the component; only where a component has them
   HistoryRoom visibility, radiance;
   ConeRoom cones;
-  Channels<float> debug;      ///< DebugChannel; only where debug planes are asked for
+  Channels<float> debug;  ///< DebugChannel; only where debug planes are asked for
 
   Scratch() = default;
   /// `grid`: the components that it is for. Without any, there is `noisy` alone: what is filtered

@@ -294,6 +294,15 @@ std::size_t Denoiser::memory_bytes() const {
   return sum;
 }
 
+std::size_t Denoiser::history_bytes() const {
+  if (impl_->oracle) return impl_->oracle->bytes();
+  if (!impl_->plan.history) return 0;
+  std::size_t sum = impl_->guides[0].bytes() + impl_->half.guides().bytes();
+  for (const ComponentFilter& filter : impl_->filters)
+    sum += filter.history_bytes() + filter.cone_bytes();
+  return sum;
+}
+
 std::string Denoiser::plan_text() const {
   const DenoiserConfig& config = impl_->config;
   const double pixels = static_cast<double>(config.width) * config.height;
@@ -304,14 +313,18 @@ std::string Denoiser::plan_text() const {
     std::snprintf(number, sizeof number, "%.1f", static_cast<double>(bytes) / pixels);
     text += what + ": " + number + " B/pixel held\n";
   };
-  add("guides of two frames", impl_->guides[0].bytes() + impl_->guides[1].bytes());
+  if (impl_->plan.history)
+    add("kept guides", impl_->guides[0].bytes() + impl_->half.guides().bytes());
+  const std::string format = std::string(" as ") + history_name(impl_->plan.history_format);
+  for (const ComponentFilter& filter : impl_->filters) {
+    const std::string name = component_name(filter.component());
+    add("kept of " + name + format, filter.history_bytes());
+    add("kept cones of " + name + format, filter.cone_bytes());
+  }
+  add("all that is kept from frame to frame", history_bytes());
   add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
   add("scratch", impl_->scratch.bytes());
   add("all that is at half resolution, but for what components keep", impl_->half.bytes());
-  for (const ComponentFilter& filter : impl_->filters) {
-    add("kept of " + component_name(filter.component()), filter.history_bytes());
-    add("kept cones of " + component_name(filter.component()), filter.cone_bytes());
-  }
   std::size_t shaded = 0;
   for (const Plane& plane : impl_->shaded) shaded += plane.bytes();
   add("unshadowed light", shaded);

@@ -100,6 +100,8 @@ class Denoiser {
   const DenoiserConfig& config() const;
   /// Bytes held for history and scratch.
   std::size_t memory_bytes() const;
+  /// Of these, what one frame leaves for the next: histories and guides.
+  std::size_t history_bytes() const;
   /// The passes and buffers of this configuration, one per line, with the bytes that a pass moves
   /// and a buffer holds for each pixel of the frame.
   std::string plan_text() const;

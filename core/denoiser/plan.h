@@ -30,15 +30,15 @@ struct Plan {
     bool any_footprint = false;  ///< one has a footprint
     bool any_effect = false;     ///< one follows its effect
     bool any_visibility = false;
-    bool any_cones = false;      ///< one is kept by cones
+    bool any_cones = false;  ///< one is kept by cones
   };
   Recipe recipe;  ///< as the preset has it
   Preset preset;  ///< as the configuration has it
   std::vector<Entry> components;
   std::vector<std::uint32_t>
-      shaded_lights;           ///< ids; unshadowed light that the core computes itself
-  bool shaded_lobe = false;    ///< ... with a specular lobe
-  bool history = false;        ///< the recipe keeps history at all
+      shaded_lights;         ///< ids; unshadowed light that the core computes itself
+  bool shaded_lobe = false;  ///< ... with a specular lobe
+  bool history = false;      ///< the recipe keeps history at all
   HistoryFormat history_format = HistoryFormat::kNone;  ///< how
   Grid full, half;             ///< the components of the frame's own resolution, and of half of it
   bool any_gradients = false;  ///< a component has gradient samples

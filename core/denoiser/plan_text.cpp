@@ -74,6 +74,9 @@ std::string text_of(const Plan& plan, const Plan::Entry& entry) {
 std::string Plan::text() const {
   std::string text = "recipe " + recipe.name + "\n" + "preset " + preset.name + "\n";
   if (history) text += "frame: surface motion vectors and history taps\n";
+  if (history)
+    text += std::string("frame: what is kept for the next frame, as ") +
+            history_name(history_format) + "\n";
   for (const Entry& entry : components) text += text_of(*this, entry);
   for (const std::uint32_t light : shaded_lights)
     text += "light" + std::to_string(light) + ".unshadowed: from the light's radiance, " +

@@ -19,10 +19,10 @@ std::vector<Preset> make_presets() {
                     .half_indirect = true,
                     .half_glossy = true};
   const Preset balanced{.name = "balanced"};
-  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour,
+  const Preset accurate{.name = "accurate",
+                        .indirect_basis = RadianceBasis::kConesColour,
                         .history = HistoryFormat::kFloat};
-  const Preset reference{
-      .name = "reference", .history = HistoryFormat::kFloat, .oracle = true};
+  const Preset reference{.name = "reference", .history = HistoryFormat::kFloat, .oracle = true};
   return {fast, balanced, accurate, reference};
 }
 

@@ -108,9 +108,8 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
       replaced[k].filter = in_other_format(config, next, k, last, parts);
     else if (cones_differ(plan, next, k))
       replaced[k].cones =
-          entry.cones
-              ? ConeHistory(width, height, next.recipe.indirect_basis, next.history_format)
-              : ConeHistory();
+          entry.cones ? ConeHistory(width, height, next.recipe.indirect_basis, next.history_format)
+                      : ConeHistory();
   }
   parts.scratch.grow(config.width, config.height, next, next.full, config.debug_planes);
 

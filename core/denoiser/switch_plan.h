@@ -23,7 +23,8 @@ struct PlannedParts {
 ///                   surface; full: they are upsampled along planes, normals and ids. Samples are
 ///                   not counted anew: four pixels that share a value have as many together
 ///   format          the same values, rounded where they are packed
-///   basis, or resolution or format of a component with cones: the cones start anew. They only take noise out
+///   basis, or resolution or format of a component with cones: the cones start anew. They only take
+///   noise out
 ///                   of new samples, whose mean is right without them
 /// `last`: guides of the frame before; null: no history is worth keeping. If memory runs out,
 /// `parts` are as they were.

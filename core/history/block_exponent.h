@@ -28,12 +28,4 @@ HOLDFAST_INLINE int block_shift(const float* in, int count, int greatest) {
   return min_of(greatest + kFloatBias - (most >> 23), kMostShift);
 }
 
-/// 32 bits that look random, of a lane and a seed.
-HOLDFAST_INLINE std::uint32_t random_bits(std::uint32_t lane, std::uint32_t seed) {
-  std::uint32_t h = (lane * 0x9e3779b9u) ^ seed;
-  h = (h ^ (h >> 16)) * 0x85ebca6bu;
-  h = (h ^ (h >> 13)) * 0xc2b2ae35u;
-  return h ^ (h >> 16);
-}
-
 }  // namespace holdfast

@@ -23,15 +23,16 @@ HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
   *a.exponent = static_cast<std::int8_t>(shift);
   const float scale = power_of_two(shift);
   const std::int32_t base = base_of(a.with_sign);
-  const std::uint32_t seed = a.seed, sign_mask = a.with_sign ? 0x80u : 0u;
+  const std::uint32_t* random = a.random;
+  const std::uint32_t sign_mask = a.with_sign ? 0x80u : 0u;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
-    const std::uint32_t noise = random_bits(static_cast<std::uint32_t>(i), seed) & kLost;
+    const std::uint32_t noise = random[i] & kLost;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
     const std::uint32_t rounded = ((bits & kMagnitudeBits) + noise) >> kShift;
     const std::int32_t code = max_of(static_cast<std::int32_t>(rounded) - base, 0);
-    out[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(code) |
-                                       ((bits >> 24) & sign_mask));
+    out[i] =
+        static_cast<std::uint8_t>(static_cast<std::uint32_t>(code) | ((bits >> 24) & sign_mask));
   }
 }
 

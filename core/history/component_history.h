@@ -36,8 +36,8 @@ struct ComponentHistory {
     as.push_back(KeptAs::kByte);
     if (has_moments()) as.insert(as.end(), {KeptAs::kHalf, KeptAs::kHalf});
     if (extras == HistoryExtras::kResidual)
-      as.insert(as.end(), {KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kSignedByte,
-                           KeptAs::kByte});
+      as.insert(as.end(),
+                {KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kByte});
     return as;
   }
   static int extra_channels(HistoryExtras extras) {

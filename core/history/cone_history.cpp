@@ -68,9 +68,9 @@ ConeHistory::ConeHistory(int width, int height, RadianceBasis basis, HistoryForm
             std::vector<KeptAs>(static_cast<std::size_t>(channels_of(colours_)), KeptAs::kByte),
             format) {}
 
-ConeRows ConeHistory::rows_at(int x, int y, int count, ConeRoom& room) const {
+ConeRows ConeHistory::rows_at(int x, int y, int count, Channels<float>& images) const {
   ConeRows rows{count, colours_, {}};
-  for (int c = 0; c < room.updated.count(); ++c) rows.of[c] = room.updated[c].row(y) + x;
+  for (int c = 0; c < images.count(); ++c) rows.of[c] = images[c].row(y) + x;
   return rows;
 }
 
@@ -79,13 +79,15 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
                           const ConeRule& rule, std::uint64_t key, ConeRoom& room,
                           WindowScratch& window) {
   const Guides& now = frames.now;
-  kept_.recall(room.kept);
+  kept_.recall(room.kept, [&](Channels<float>& images, int y) {
+    means_to_sums(rows_at(0, y, now.view.width, images));
+  });
   for_each_row(now.view.height, [&](int y) {
     Taps taps[kTapBlock];
     for (int x = 0; x < now.view.width; x += kTapBlock) {
       const int count = std::min(kTapBlock, now.view.width - x);
       choose_taps(surface, effect, x, y, count, taps);
-      const ConeRows rows = rows_at(x, y, count, room);
+      const ConeRows rows = rows_at(x, y, count, room.updated);
       ConeCorrection block{now.depth().row(y) + x, {},   {}, rule.prior_samples,
                            rule.most_samples,      rows, {}};
       for (int c = 0; c < 3; ++c) block.normal[c] = now.normal(c).row(y) + x;
@@ -100,7 +102,9 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
     }
   });
   spread_out(now, room, window);
-  kept_.keep(room.kept, key);
+  kept_.keep(room.kept, key, [&](Channels<float>& images, int y) {
+    sums_to_means(rows_at(0, y, now.view.width, images));
+  });
 }
 
 /// The cones that were kept at the taps, turned to the normals of now.
@@ -108,7 +112,8 @@ void ConeHistory::recall(const Guides& previous, const ConeRoom& room, const Tap
                          const float* const (&normal)[3], const ConeRows& rows) const {
   float before[3][kTapBlock];
   std::uint8_t turned[kTapBlock];
-  recall_cones({taps, room.kept, previous, {normal[0], normal[1], normal[2]}, rows, before, turned});
+  recall_cones(
+      {taps, room.kept, previous, {normal[0], normal[1], normal[2]}, rows, before, turned});
   for (int i = 0; i < rows.count; ++i) {
     if (!turned[i]) continue;
     const glm::vec3 from(before[0][i], before[1][i], before[2][i]);

@@ -27,7 +27,7 @@ struct ConeSamples {
 /// groups that one filter pass takes: sums of radiance by colour and cone, samples by cone; with
 /// luminance alone then R and B, weighed like the sum of luminance.
 struct ConeRoom {
-  Channels<float> kept;     ///< those of the frame before, then of this; empty where floats are kept
+  Channels<float> kept;  ///< those of the frame before, then of this; empty where floats are kept
   Channels<float> updated;  ///< before they are spread out
 
   ConeRoom() = default;
@@ -67,12 +67,12 @@ class ConeHistory {
                ConeRoom& room, WindowScratch& window);
 
  private:
-  ConeRows rows_at(int x, int y, int count, ConeRoom& room) const;
+  ConeRows rows_at(int x, int y, int count, Channels<float>& images) const;
   void recall(const Guides& previous, const ConeRoom& room, const Taps* taps,
               const float* const (&normal)[3], const ConeRows& rows) const;
 
   int colours_ = 1;  ///< of a cone: luminance, or R, G, B
-  KeptImages kept_;  ///< channels as in ConeRoom
+  KeptImages kept_;  ///< channels as in ConeRoom; packed, means in place of sums
 };
 
 }  // namespace holdfast

@@ -214,6 +214,29 @@ HOLDFAST_INLINE void correct_body(const CorrectionArgs& args) {
     correct_colours(a, cone, known);
 }
 
+HOLDFAST_INLINE void divide_body(const ConeRows& a) {
+  for (int colour = 0; colour < a.colours; ++colour)
+    for (int k = 0; k < kCones; ++k) {
+      float* sum = a.sum(colour, k);
+      const float* samples = a.samples(k);
+#pragma GCC ivdep
+      for (int i = 0; i < a.count; ++i)
+        sum[i] = samples[i] > 0.0f ? sum[i] / max_of(samples[i], 1e-20f) : 0.0f;
+    }
+}
+
+HOLDFAST_INLINE void multiply_body(const ConeRows& a) {
+  for (int colour = 0; colour < a.colours; ++colour)
+    for (int k = 0; k < kCones; ++k) {
+      float* sum = a.sum(colour, k);
+      const float* samples = a.samples(k);
+#pragma GCC ivdep
+      for (int i = 0; i < a.count; ++i) sum[i] *= samples[i];
+    }
+}
+
+HOLDFAST_KERNEL(divide, ConeRows)
+HOLDFAST_KERNEL(multiply, ConeRows)
 HOLDFAST_KERNEL(recall, ConeRecall)
 HOLDFAST_KERNEL(correct, CorrectionArgs)
 
@@ -228,6 +251,8 @@ RestingAxes resting_axes() {
 
 }  // namespace
 
+void sums_to_means(const ConeRows& rows) noexcept { divide(rows); }
+void means_to_sums(const ConeRows& rows) noexcept { multiply(rows); }
 void recall_cones(const ConeRecall& block) noexcept { recall(block); }
 
 void correct_by_cones(const ConeCorrection& block) noexcept {

@@ -12,7 +12,7 @@ inline constexpr int kMostConeChannels = 28;
 /// Cones of the pixels of a block as channels: sums by colour and cone, samples by cone, and with
 /// one colour the chroma R and B. Rows of `count` values.
 struct ConeRows {
-  int count;    ///< 1..kTapBlock
+  int count;    ///< 1..kTapBlock; of `sums_to_means` and back any
   int colours;  ///< 1: luminance, or 3
   float* of[kMostConeChannels];
 
@@ -32,6 +32,11 @@ struct ConeRecall {
   std::uint8_t* turned;           ///< 1 where that differs from the normal by kSameConesCosine
 };
 void recall_cones(const ConeRecall& block) noexcept;
+
+/// Sums of cones into their means, which are 0 without samples, and back. Of equal radiance the
+/// means are equal and stay so when they are rounded alike; the sums are not.
+void sums_to_means(const ConeRows& rows) noexcept;
+void means_to_sums(const ConeRows& rows) noexcept;
 
 /// Corrects samples by cones, and adds them: what ConeHistory says of x'.
 struct ConeCorrection {

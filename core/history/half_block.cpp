@@ -13,6 +13,18 @@ namespace {
 constexpr std::uint32_t kLost = 0x1fffu;  // bits of a float that a half has no room for
 constexpr int kGreatest = 14;             // exponent of the greatest value of a block
 
+/// The finaliser of MurmurHash3 (Appleby).
+HOLDFAST_INLINE void draw_body(const BlockBits& a) {
+  const std::uint32_t seed = a.seed;
+  std::uint32_t* out = a.out;
+  for (std::uint32_t i = 0; i < kHalfBlock; ++i) {
+    std::uint32_t h = (i * 0x9e3779b9u) ^ seed;
+    h = (h ^ (h >> 16)) * 0x85ebca6bu;
+    h = (h ^ (h >> 13)) * 0xc2b2ae35u;
+    out[i] = h ^ (h >> 16);
+  }
+}
+
 /// A block's values, scaled and rounded to what halves hold.
 struct Rounding {
   const HalfPacking& block;
@@ -22,7 +34,7 @@ struct Rounding {
 HOLDFAST_INLINE void round_block_body(const Rounding& a) {
   const float* in = a.block.in;
   const int count = a.block.count;
-  const std::uint32_t seed = a.block.seed;
+  const std::uint32_t* random = a.block.random;
   const int shift = block_shift(in, count, kGreatest);
   *a.block.exponent = static_cast<std::int8_t>(shift);
   const float scale = power_of_two(shift);
@@ -30,7 +42,7 @@ HOLDFAST_INLINE void round_block_body(const Rounding& a) {
   for (int i = count; i < kHalfBlock; ++i) out[i] = 0.0f;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const std::uint32_t noise = random_bits(static_cast<std::uint32_t>(i), seed) & kLost;
+    const std::uint32_t noise = random[i] & kLost;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
     out[i] = std::bit_cast<float>((bits + noise) & ~kLost);
   }
@@ -54,13 +66,13 @@ HOLDFAST_INLINE void narrow_plain_body(const Narrowing& a) {
   const int count = whole_groups(a.count);
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i]), magnitude = bits & kMagnitudeBits;
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i]),
+                        magnitude = bits & kMagnitudeBits;
     // A step of a float at 0.5 is one of the least halves: the sum's rounding is theirs.
     const float moved = std::bit_cast<float>(magnitude) + 0.5f;
     const std::uint32_t tiny = std::bit_cast<std::uint32_t>(moved) - 0x3f000000u;
     const std::uint32_t normal = (magnitude >> 13) - kRebias;
-    const std::uint32_t half =
-        static_cast<std::int32_t>(magnitude) < kLeastNormal ? tiny : normal;
+    const std::uint32_t half = static_cast<std::int32_t>(magnitude) < kLeastNormal ? tiny : normal;
     out[i] = static_cast<std::uint16_t>(half | ((bits >> 16) & 0x8000u));
   }
 }
@@ -73,12 +85,14 @@ HOLDFAST_INLINE void widen_plain_body(const HalfUnpacking& a) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const std::uint32_t half = in[i];
-    const float magnitude = std::bit_cast<float>((half & 0x7fffu) << 13) * power_of_two(kFloatBias - 15);
+    const float magnitude =
+        std::bit_cast<float>((half & 0x7fffu) << 13) * power_of_two(kFloatBias - 15);
     const std::uint32_t sign = (half & 0x8000u) << 16;
     out[i] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(magnitude * scale) | sign);
   }
 }
 
+HOLDFAST_KERNEL(draw, BlockBits)
 HOLDFAST_KERNEL(round_block, Rounding)
 HOLDFAST_KERNEL(narrow_plain, Narrowing)
 HOLDFAST_KERNEL(widen_plain, HalfUnpacking)
@@ -104,9 +118,9 @@ __attribute__((target("arch=x86-64-v3"))) void widen_v3(const HalfUnpacking& a) 
 
 HOLDFAST_TARGET_V4 void narrow_v4(const Narrowing& a) noexcept {
   for (int i = 0; i < a.count; i += 16)
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(a.out + i),
-                        _mm512_maskz_cvtps_ph(kAll, _mm512_loadu_ps(a.in + i),
-                                              _MM_FROUND_TO_NEAREST_INT));
+    _mm256_storeu_si256(
+        reinterpret_cast<__m256i*>(a.out + i),
+        _mm512_maskz_cvtps_ph(kAll, _mm512_loadu_ps(a.in + i), _MM_FROUND_TO_NEAREST_INT));
 }
 
 HOLDFAST_TARGET_V4 void widen_v4(const HalfUnpacking& a) noexcept {
@@ -127,6 +141,8 @@ void narrow(const Narrowing& a) noexcept {
 }
 
 }  // namespace
+
+void draw_block_bits(const BlockBits& block) noexcept { draw(block); }
 
 void pack_half_block(const HalfPacking& block) noexcept {
   float rounded[kHalfBlock];

@@ -20,15 +20,12 @@ int count_of(const std::vector<KeptAs>& channels, bool halves) {
   }));
 }
 
-/// Calls `body(c, as, k, x, count)` for every block of a row: channel c is the k-th of its kind.
+/// Calls `body(c, as, k)` for every channel c, which is the k-th of its kind.
 template <class Body>
-void for_each_block(const std::vector<KeptAs>& channels, int width, const Body& body) {
+void for_each_channel(const std::vector<KeptAs>& channels, const Body& body) {
   int of_kind[2] = {0, 0};
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const int k = of_kind[channels[c] == KeptAs::kHalf ? 1 : 0]++;
-    for (int x = 0; x < width; x += kHalfBlock)
-      body(static_cast<int>(c), channels[c], k, x, std::min(kHalfBlock, width - x));
-  }
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    body(static_cast<int>(c), channels[c], of_kind[channels[c] == KeptAs::kHalf ? 1 : 0]++);
 }
 
 }  // namespace
@@ -46,57 +43,71 @@ KeptImages::KeptImages(int width, int height, std::vector<KeptAs> channels, Hist
   exponents_ = Channels<std::int8_t>(blocks() * count, height, 1);
 }
 
-void KeptImages::recall(Channels<float>& room) {
-  if (format_ == HistoryFormat::kPacked) unpack(room);
+void KeptImages::recall(Channels<float>& room, const RowStep& unpacked) {
+  if (format_ == HistoryFormat::kPacked) {
+    assert(room.count() == static_cast<int>(channels_.size()) && room.width() == width_);
+    for_each_row(height_, [&](int y) {
+      unpack_row(y, room);
+      if (unpacked) unpacked(room, y);
+    });
+  }
   if (format_ == HistoryFormat::kFloat) std::swap(whole_, room);
 }
 
-void KeptImages::keep(Channels<float>& now, std::uint64_t key) {
-  if (format_ == HistoryFormat::kPacked) pack(now, key);
+void KeptImages::keep(Channels<float>& now, std::uint64_t key, const RowStep& packing) {
+  if (format_ == HistoryFormat::kPacked) {
+    assert(now.count() == static_cast<int>(channels_.size()) && now.width() == width_);
+    for_each_row(height_, [&](int y) {
+      if (packing) packing(now, y);
+      pack_row(y, now, key);
+    });
+  }
   if (format_ == HistoryFormat::kFloat) std::swap(whole_, now);
 }
 
 Channels<float> KeptImages::copy() const {
   Channels<float> out(width_, height_, static_cast<int>(channels_.size()));
-  if (format_ == HistoryFormat::kPacked) unpack(out);
-  if (format_ == HistoryFormat::kFloat)
-    for_each_row(height_, [&](int y) {
+  for_each_row(height_, [&](int y) {
+    if (format_ == HistoryFormat::kPacked) unpack_row(y, out);
+    if (format_ == HistoryFormat::kFloat)
       for (int c = 0; c < out.count(); ++c) std::copy_n(whole_[c].row(y), width_, out[c].row(y));
-    });
+  });
   return out;
 }
 
-void KeptImages::unpack(Channels<float>& room) const {
-  assert(room.count() == static_cast<int>(channels_.size()) && room.width() == width_);
-  for_each_row(height_, [&](int y) {
-    const std::int8_t* exponents = exponents_[0].row(y);
-    for_each_block(channels_, width_, [&](int c, KeptAs as, int k, int x, int count) {
-      const std::int8_t exponent = exponents[c * blocks() + x / kBlock];
+void KeptImages::unpack_row(int y, Channels<float>& room) const {
+  for (int x = 0; x < width_; x += kBlock) {
+    const int count = std::min(kBlock, width_ - x);
+    const std::int8_t* exponents = exponents_[0].row(y) + x / kBlock;
+    for_each_channel(channels_, [&](int c, KeptAs as, int k) {
+      const std::int8_t exponent = exponents[c * blocks()];
       float* out = room[c].row(y) + x;
       if (as == KeptAs::kHalf)
         unpack_half_block({halves_[k].row(y) + x, count, exponent, out});
       else
         unpack_byte_block({bytes_[k].row(y) + x, count, as == KeptAs::kSignedByte, exponent, out});
     });
-  });
+  }
 }
 
-void KeptImages::pack(const Channels<float>& now, std::uint64_t key) {
-  assert(now.count() == static_cast<int>(channels_.size()) && now.width() == width_);
-  for_each_row(height_, [&](int y) {
-    std::int8_t* exponents = exponents_[0].row(y);
-    for_each_block(channels_, width_, [&](int c, KeptAs as, int k, int x, int count) {
-      const int block = c * blocks() + x / kBlock;
-      const auto seed = static_cast<std::uint32_t>(
-          mix_bits(key + (static_cast<std::uint64_t>(y) << 32) + static_cast<std::uint64_t>(block)));
+void KeptImages::pack_row(int y, const Channels<float>& now, std::uint64_t key) {
+  std::uint32_t random[kBlock];
+  for (int x = 0; x < width_; x += kBlock) {
+    const int count = std::min(kBlock, width_ - x);
+    const std::uint64_t block =
+        (static_cast<std::uint64_t>(y) << 32) + static_cast<std::uint64_t>(x);
+    draw_block_bits({static_cast<std::uint32_t>(mix_bits(key + block)), random});
+    std::int8_t* exponents = exponents_[0].row(y) + x / kBlock;
+    for_each_channel(channels_, [&](int c, KeptAs as, int k) {
+      std::int8_t* exponent = exponents + c * blocks();
       const float* in = now[c].row(y) + x;
       if (as == KeptAs::kHalf)
-        pack_half_block({in, count, seed, halves_[k].row(y) + x, exponents + block});
+        pack_half_block({in, count, random, halves_[k].row(y) + x, exponent});
       else
-        pack_byte_block({in, count, as == KeptAs::kSignedByte, seed, bytes_[k].row(y) + x,
-                         exponents + block});
+        pack_byte_block(
+            {in, count, as == KeptAs::kSignedByte, random, bytes_[k].row(y) + x, exponent});
     });
-  });
+  }
 }
 
 }  // namespace holdfast

@@ -30,10 +30,10 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
   EXPECT_EQ(keys(scene), (Names{"caption", "height", "points", "width"}));
   std::set<std::string> names;
   for (const auto& point : scene["points"]) {
-    EXPECT_EQ(keys(point),
-              (Names{"bytes_per_pixel", "composite_rmse", "front", "half_resolution",
-                     "indirect_basis", "kernel_radius", "more_levels", "ms", "name", "presets",
-                     "recipe", "rmse", "rmse_behind_front", "ssim", "stages"}));
+    EXPECT_EQ(keys(point), (Names{"bytes_per_pixel", "composite_rmse", "front", "half_resolution",
+                                  "history", "history_bytes_per_pixel", "indirect_basis",
+                                  "kernel_radius", "more_levels", "ms", "name", "presets", "recipe",
+                                  "rmse", "rmse_behind_front", "ssim", "stages"}));
     EXPECT_GT(point["ms"], 0.0);
     EXPECT_GT(point["rmse"], 0.0);
     EXPECT_GT(point["composite_rmse"], 0.0);
@@ -41,7 +41,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
     EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
   }
   for (const char* name : {"reliable fast", "reliable balanced", "reliable accurate", "clamp fast",
-                           "reliable 3x3 cones half"})
+                           "reliable 3x3 cones half f16"})
     EXPECT_TRUE(names.contains(name)) << name;
   EXPECT_NE(test::file_text(dir / "table.md").find("| reliable fast |"), std::string::npos);
   EXPECT_EQ(test::file_text(dir / "plot.svg").rfind("<svg ", 0), 0u);

@@ -147,10 +147,13 @@ struct Corrected {
   Channels<float> noisy{kWidth, kHeight, 3};
   Plane directions{kDirection, kWidth, kHeight};
   ConeHistory cones;
+  ConeRoom room;
+  std::uint64_t key = 0;
   bool known = false;
 
-  explicit Corrected(RadianceBasis basis, glm::vec3 towards = {0, 0, -1})
-      : up(-towards), cones(kWidth, kHeight, basis) {
+  explicit Corrected(RadianceBasis basis, glm::vec3 towards = {0, 0, -1},
+                     HistoryFormat format = HistoryFormat::kFloat)
+      : up(-towards), cones(kWidth, kHeight, basis, format), room(kWidth, kHeight, basis, format) {
     const Camera camera =
         test::perspective_camera(kWidth, kHeight, glm::dvec3(0), glm::dvec3(towards));
     before = test::wall(camera, kWidth, kHeight);
@@ -180,7 +183,7 @@ struct Corrected {
       }
     const ConeSamples samples{&directions, &noisy};
     cones.correct({now, before, scene}, known ? &surface : nullptr, nullptr, {&samples, 1},
-                  ConeRule{}, window);
+                  ConeRule{}, key++, room, window);
     known = true;
   }
   double mean(int c) const {

@@ -107,6 +107,8 @@ TEST(Trade, NamesAreThoseOfPresetsElseOfWhatIsChosen) {
   p.half_glossy = true;
   p.more_levels = 1;
   EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half");
+  p.history = "f32";
+  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half f32");
 }
 
 TEST(TradePlot, HasAPointForEachSettingAndANameForEachPreset) {

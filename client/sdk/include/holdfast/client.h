@@ -63,6 +63,7 @@ struct SessionOptions {
   std::string indirect_basis;   ///< "irradiance", "luminance-cones", "cones"; empty = the preset's
   std::vector<std::string> half_resolution;  ///< of "indirect" and "glossy", or "none"; empty = the
                                              ///< preset's
+  std::string history;                       ///< "f16" or "f32"; empty = the preset's
   std::uint64_t seed = 0;                    ///< the same seed gives the same bits
   bool debug_planes = false;  ///< also motion, history and confidence of each component
   double budget_ms = 0;       ///< wished time of a frame in the core, for which faster presets than
