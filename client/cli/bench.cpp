@@ -1,7 +1,7 @@
 #include "client/cli/bench.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <ctime>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -21,38 +21,59 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// What one recipe took.
-struct Timing {
-  double ms = 0;
-  std::vector<StageTime> stages;
-  std::string plan;
+/// Processor time of this thread, ms.
+double processor_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+/// One configuration at work.
+class Runner {
+ public:
+  Runner(const DenoiserConfig& config, bool one_thread)
+      : denoiser_(config), one_thread_(one_thread) {}
+
+  void filter(const Frame& frame, bool timed) {
+    const double start = processor_ms();
+    FrameReport report = denoiser_.filter(frame, results_);
+    if (one_thread_) {  // this thread has done all of it
+      const double share = (processor_ms() - start) / report.ms;
+      report.ms *= share;
+      for (StageTime& stage : report.stages) stage.ms *= share;
+    }
+    if (timed) reports_.push_back(std::move(report));
+  }
+
+  double ms() const {
+    return over_frames([](const FrameReport& report) { return report.ms; });
+  }
+  std::vector<StageTime> stages() const {
+    std::vector<StageTime> stages = reports_.front().stages;
+    for (std::size_t k = 0; k < stages.size(); ++k)
+      stages[k].ms = over_frames([k](const FrameReport& r) { return r.stages[k].ms; });
+    return stages;
+  }
+  std::string plan() const { return denoiser_.plan_text(); }
+
+ private:
+  template <class Value>
+  double over_frames(const Value& value) const {
+    std::vector<double> values;
+    for (const FrameReport& report : reports_) values.push_back(value(report));
+    return median(std::move(values));
+  }
+
+  Denoiser denoiser_;
+  bool one_thread_;
+  PlaneSet results_;
+  std::vector<FrameReport> reports_;
 };
 
-Timing time_recipe(BenchFrames& frames, const BenchOptions& options, const std::string& recipe,
-                   int count) {
-  DenoiserConfig config = frames.config();
-  config.recipe = recipe;
-  config.preset = options.preset;
-  config.indirect_basis = options.indirect_basis;
-  config.half_resolution = options.half_resolution;
-  config.history = options.history;
-  Denoiser denoiser(config);
-  PlaneSet results;
-  std::vector<FrameReport> reports;
-  for (int step = 0; step < kWarmUp + count; ++step) {
-    FrameReport report = denoiser.filter(frames.at(step), results);
-    if (step >= kWarmUp) reports.push_back(std::move(report));
-  }
-  Timing timing{0, reports.front().stages, denoiser.plan_text()};
-  const auto over_frames = [&](const auto& value) {
-    std::vector<double> values;
-    for (const FrameReport& report : reports) values.push_back(value(report));
-    return median(values);
-  };
-  timing.ms = over_frames([](const FrameReport& report) { return report.ms; });
-  for (std::size_t k = 0; k < timing.stages.size(); ++k)
-    timing.stages[k].ms = over_frames([k](const FrameReport& r) { return r.stages[k].ms; });
-  return timing;
+/// Filters `count` frames after those of warm-up, each by every runner.
+void take_turns(BenchFrames& frames, int count, std::vector<Runner>& runners) {
+  for (int step = 0; step < kWarmUp + count; ++step)
+    for (Runner& runner : runners) runner.filter(frames.at(step), step >= kWarmUp);
 }
 
 /// Runs the scalar kernels while it lives.
@@ -67,70 +88,80 @@ class ScalarKernels {
   Isa before_;
 };
 
+/// The same with the scalar kernels.
+Runner scalar_run(BenchFrames& frames, const DenoiserConfig& config, int count, bool one_thread) {
+  const ScalarKernels scalar;
+  std::vector<Runner> runners;
+  runners.emplace_back(config, one_thread);
+  take_turns(frames, std::min(count, kReferenceFrames), runners);
+  return std::move(runners.front());
+}
+
+DenoiserConfig config_of(const BenchOptions& options, const DenoiserConfig& of_frames,
+                         const std::string& recipe) {
+  DenoiserConfig config = of_frames;
+  config.recipe = recipe;
+  config.preset = options.preset;
+  config.indirect_basis = options.indirect_basis;
+  config.half_resolution = options.half_resolution;
+  config.history = options.history;
+  return config;
+}
+
+/// Times `frames` after all planes but those of one signal have been dropped from them.
+OneSignal time_one_signal(BenchFrames& frames, const BenchOptions& options, bool one_thread) {
+  frames.keep_one_signal();
+  DenoiserConfig config = frames.config();
+  config.recipe = "svgf";
+  config.half_resolution = {"none"};
+  config.more_levels = -1;  // of five
+  const double us_per_pixel = 1e3 / (static_cast<double>(config.width) * config.height);
+  std::vector<Runner> runners;
+  runners.emplace_back(config, one_thread);
+  take_turns(frames, options.frames, runners);
+  OneSignal result{runners.front().ms() * us_per_pixel, 0};
+  if (options.reference)
+    result.reference_us_per_pixel =
+        scalar_run(frames, config, options.frames, one_thread).ms() * us_per_pixel;
+  return result;
+}
+
 }  // namespace
 
 BenchResult run_bench(const BenchOptions& options) {
   BenchResult result;
   result.isa = isa_name(selected_isa());
   BenchFrames frames(options.scene, options.width, options.height);
-  const DenoiserConfig& config = frames.config();
-  result.width = config.width;
-  result.height = config.height;
+  if (!options.signals.empty()) frames.keep(options.signals);
+  const DenoiserConfig& of_frames = frames.config();
+  result.width = of_frames.width;
+  result.height = of_frames.height;
   result.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(result.threads));
-  const double ns_per_pixel = 1e6 / (static_cast<double>(config.width) * config.height);
+  const bool one_thread = result.threads == 1;
+  const double ns_per_pixel = 1e6 / (static_cast<double>(of_frames.width) * of_frames.height);
   std::vector<std::string> recipes = options.recipes;
-  if (recipes.empty()) recipes.push_back(config.recipe);
-  for (const std::string& recipe : recipes) {
-    const Timing timing = time_recipe(frames, options, recipe, options.frames);
-    result.frames.push_back({recipe, options.preset, timing.ms});
-    if (result.frames.size() > 1) continue;
-    result.plan = timing.plan;
-    for (const StageTime& stage : timing.stages)
-      result.stages.push_back({stage.stage, stage.ms * ns_per_pixel, stage.bytes_per_pixel, 0});
+  if (recipes.empty()) recipes.push_back(of_frames.recipe);
+  std::vector<Runner> runners;
+  for (const std::string& recipe : recipes)
+    runners.emplace_back(config_of(options, of_frames, recipe), one_thread);
+  take_turns(frames, options.frames, runners);
+  for (std::size_t k = 0; k < recipes.size(); ++k)
+    result.frames.push_back({recipes[k], options.preset, runners[k].ms()});
+  result.plan = runners.front().plan();
+  for (const StageTime& stage : runners.front().stages())
+    result.stages.push_back({stage.stage, stage.ms * ns_per_pixel, stage.bytes_per_pixel, 0});
+  runners.clear();
+  if (options.reference) {
+    const Runner scalar = scalar_run(frames, config_of(options, of_frames, recipes.front()),
+                                     options.frames, one_thread);
+    const std::vector<StageTime> stages = scalar.stages();
+    for (std::size_t k = 0; k < result.stages.size(); ++k)
+      result.stages[k].reference_ns_per_pixel = stages[k].ms * ns_per_pixel;
   }
-  if (!options.reference) return result;
-  const ScalarKernels scalar;
-  const Timing reference =
-      time_recipe(frames, options, recipes.front(), std::min(options.frames, kReferenceFrames));
-  for (std::size_t k = 0; k < result.stages.size(); ++k)
-    result.stages[k].reference_ns_per_pixel = reference.stages[k].ms * ns_per_pixel;
+  if (options.one_signal) result.one_signal = time_one_signal(frames, options, one_thread);
   return result;
-}
-
-nlohmann::ordered_json bench_json(const BenchResult& result) {
-  nlohmann::ordered_json json = {{"isa", result.isa},
-                                 {"threads", result.threads},
-                                 {"width", result.width},
-                                 {"height", result.height},
-                                 {"stages", nlohmann::ordered_json::array()},
-                                 {"frames", nlohmann::ordered_json::array()}};
-  for (const BenchStage& s : result.stages)
-    json["stages"].push_back({{"stage", s.stage},
-                              {"ns_per_pixel", s.ns_per_pixel},
-                              {"bytes_per_pixel", s.bytes_per_pixel},
-                              {"reference_ns_per_pixel", s.reference_ns_per_pixel}});
-  for (const BenchFrame& f : result.frames)
-    json["frames"].push_back({{"recipe", f.recipe}, {"preset", f.preset}, {"ms", f.ms}});
-  return json;
-}
-
-std::string bench_text(const BenchResult& result) {
-  char line[160];
-  std::string text;
-  const auto add = [&](auto... values) {
-    std::snprintf(line, sizeof line, values...);
-    text += line;
-  };
-  add("%dx%d, %d threads, %s\n", result.width, result.height, result.threads, result.isa.c_str());
-  add("%-32s %10s %10s %10s %8s\n", "stage", "ns/pixel", "scalar", "B/pixel", "GB/s");
-  for (const BenchStage& s : result.stages)
-    add("%-32s %10.3f %10.3f %10.0f %8.1f\n", s.stage.c_str(), s.ns_per_pixel,
-        s.reference_ns_per_pixel, s.bytes_per_pixel, s.bytes_per_pixel / s.ns_per_pixel);
-  for (const BenchFrame& f : result.frames)
-    add("%-32s %10.1f ms a frame (%s)\n", f.recipe.c_str(), f.ms, f.preset.c_str());
-  return text;
 }
 
 }  // namespace holdfast::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,11 @@ struct BenchOptions {
   std::string indirect_basis;                ///< empty = the preset's
   std::vector<std::string> half_resolution;  ///< empty = the preset's
   std::string history;                       ///< empty = the preset's
-  int frames = 8;         ///< timed frames of each recipe, >= 1, after two of warm-up
-  int threads = 0;        ///< that filter; 0 = one for each core
-  bool reference = true;  ///< also time the scalar kernels
+  std::vector<std::string> signals;          ///< kinds of components that are kept; empty = all
+  int frames = 8;           ///< timed frames of each recipe, >= 1, after two of warm-up
+  int threads = 0;          ///< that filter; 0 = one for each core
+  bool reference = true;    ///< also time the scalar kernels
+  bool one_signal = false;  ///< also time OneSignal
 };
 
 /// One stage of the core, as medians over frames.
@@ -35,16 +38,25 @@ struct BenchFrame {
   double ms = 0;
 };
 
+/// A frame of one signal of three channels under recipe `svgf` with four levels, by guides alone:
+/// what other filters are usually timed with.
+struct OneSignal {
+  double us_per_pixel = 0;
+  double reference_us_per_pixel = 0;  ///< with the scalar kernels; 0 = not measured
+};
+
 struct BenchResult {
   std::string isa;
   int threads = 0, width = 0, height = 0;
   std::vector<BenchStage> stages;  ///< of the first recipe
   std::vector<BenchFrame> frames;  ///< of every recipe
   std::string plan;                ///< of the first recipe
+  std::optional<OneSignal> one_signal;
 };
 
 /// Times the core alone: frames are in memory before the first is filtered, and results are
-/// dropped.
+/// dropped. Recipes take turns, frame by frame. On one thread times are processor time, so that
+/// other work on the machine counts little; on more they are wall time.
 ///
 /// The reference of a stage is the same stage in the same run on the same number of threads, its
 /// kernels compiled for plain scalar code. What is no kernel is the same code in both.

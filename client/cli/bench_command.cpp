@@ -32,12 +32,18 @@ void add_bench(CLI::App& app) {
       ->delimiter(',');
   add_preset_options(command, options.preset, options.indirect_basis, options.half_resolution,
                      options.history);
+  command
+      .add_option("--signals", options.signals,
+                  "Kinds of components to keep, with commas between: visibility, glossy, indirect")
+      ->delimiter(',');
   command.add_option("--frames", options.frames, "Timed frames of each recipe, after two others")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command.add_option("--threads", options.threads, "That filter; default: one for each core")
       ->check(CLI::Range(1, 1024));
   command.add_flag("--no-reference", args->no_reference, "Do not time the scalar kernels");
+  command.add_flag("--one-signal", options.one_signal,
+                   "Also time one signal of three channels under svgf with four levels");
   command.add_flag("--plan", args->plan, "Also print the first recipe's plan");
   command.add_flag("--quiet", args->quiet, "No table");
   command.add_option("--json", args->json, "File for the machine-readable result");

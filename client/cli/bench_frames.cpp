@@ -6,6 +6,7 @@
 #include "client/scenes/load.h"
 #include "client/scenes/renderer.h"
 #include "client/sequence/sequence.h"
+#include "core/frame/error.h"
 
 namespace holdfast::cli {
 namespace {
@@ -18,6 +19,25 @@ void complete_tables(std::vector<Frame>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     frames[i].objects.insert(frames[i - 1].objects.begin(), frames[i - 1].objects.end());
     frames[i].lights.insert(frames[i - 1].lights.begin(), frames[i - 1].lights.end());
+  }
+}
+
+/// "visibility", "glossy" or "indirect" for a plane of such a component, else nothing.
+std::string component_kind(PlaneId id) {
+  switch (id.kind) {
+    case PlaneKind::kUnshadowed:
+    case PlaneKind::kVisibility:
+    case PlaneKind::kBlockerDistance:
+    case PlaneKind::kBlockerId:
+    case PlaneKind::kLightSample: return "visibility";
+    case PlaneKind::kGlossy:
+    case PlaneKind::kGlossyDirection:
+    case PlaneKind::kGlossyHitDistance:
+    case PlaneKind::kGlossyHitId: return "glossy";
+    case PlaneKind::kIndirect:
+    case PlaneKind::kIndirectDirection: return "indirect";
+    case PlaneKind::kGradient: return component_kind(component_plane(id.component));
+    default: return "";
   }
 }
 
@@ -52,6 +72,46 @@ void BenchFrames::render(const std::string& scene, int width, int height) {
   config_.height = height;
   config_.lights = renderer.lights();
   for (int i = 0; i < kHeld; ++i) frames_.push_back(renderer.frame(i));
+}
+
+template <class Wanted>
+void BenchFrames::drop_unless(const Wanted& wanted) {
+  const auto unwanted = [&](PlaneId id) { return !wanted(id); };
+  for (const PlaneId id : config_.planes)
+    if (unwanted(id))
+      for (Frame& frame : frames_) frame.planes.remove(id);
+  std::erase_if(config_.planes, unwanted);
+}
+
+bool BenchFrames::has(PlaneKind kind) const {
+  return std::any_of(config_.planes.begin(), config_.planes.end(),
+                     [&](PlaneId id) { return id.kind == kind; });
+}
+
+void BenchFrames::keep(const std::vector<std::string>& kinds) {
+  for (const std::string& kind : kinds) {
+    if (kind != "visibility" && kind != "glossy" && kind != "indirect")
+      throw InputError("option --signals", "must name visibility, glossy or indirect",
+                       "'" + kind + "'");
+    if (std::none_of(config_.planes.begin(), config_.planes.end(),
+                     [&](PlaneId id) { return component_kind(id) == kind; }))
+      throw InputError("option --signals", "must name what the scene has", "'" + kind + "'");
+  }
+  drop_unless([&](PlaneId id) {
+    const std::string kind = component_kind(id);
+    return kind.empty() || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  });
+}
+
+void BenchFrames::keep_one_signal() {
+  if (!has(PlaneKind::kIndirect) && !has(PlaneKind::kGlossy))
+    throw InputError("option --one-signal", "needs a scene with indirect light or reflections",
+                     "neither");
+  const auto signal = has(PlaneKind::kIndirect) ? PlaneKind::kIndirect : PlaneKind::kGlossy;
+  drop_unless([&](PlaneId id) {
+    return id.kind == PlaneKind::kDepth || id.kind == PlaneKind::kNormal ||
+           id.kind == PlaneKind::kObjectId || id.kind == signal;
+  });
 }
 
 const Frame& BenchFrames::at(int step) {

@@ -15,6 +15,14 @@ class BenchFrames {
   /// frames of a sequence if `scene` is a folder; then its own size counts. Throws InputError.
   BenchFrames(const std::string& scene, int width, int height);
 
+  /// Drops the planes of all components but these kinds ("visibility", "glossy", "indirect").
+  /// Throws InputError for another name, and for one that no frame brings.
+  void keep(const std::vector<std::string>& kinds);
+
+  /// Drops all planes but guides without material, and one signal of three channels: indirect light
+  /// without directions, else reflections without hits. Throws InputError if there is neither.
+  void keep_one_signal();
+
   /// The frame to filter as the `step`-th, step = 0, 1, ...; valid until the next call.
   const Frame& at(int step);
 
@@ -24,6 +32,9 @@ class BenchFrames {
  private:
   void read(const std::string& dir);
   void render(const std::string& scene, int width, int height);
+  template <class Wanted>
+  void drop_unless(const Wanted& wanted);
+  bool has(PlaneKind kind) const;
 
   DenoiserConfig config_;
   std::vector<Frame> frames_;

@@ -9,10 +9,13 @@
 namespace holdfast {
 
 std::ptrdiff_t padded_stride(int width) {
-  constexpr std::ptrdiff_t kLine = 16;    // values of 4 bytes in a cache line of 64 bytes
-  constexpr std::ptrdiff_t kPage = 1024;  // values of 4 bytes in 4096 bytes
-  const std::ptrdiff_t rounded = (width + kLine - 1) / kLine * kLine;
-  return rounded % kPage == 0 ? rounded + kLine : rounded;
+  constexpr std::ptrdiff_t kLine = 16;  // values of 4 bytes in a cache line of 64 bytes
+  constexpr std::ptrdiff_t kFew = 16;   // lines: images so narrow are small, and stay so
+  // An odd number of lines: the rows of a column lie in different cache sets, and so do, at heights
+  // that are a multiple of 16 but not of 64, channels of one image. (At 480x64, whose channels were
+  // multiples of 4096 bytes apart, a filter pass over seven took half as long again.)
+  const std::ptrdiff_t lines = (width + kLine - 1) / kLine;
+  return (lines < kFew || lines % 2 == 1 ? lines : lines + 1) * kLine;
 }
 
 AlignedBuffer::AlignedBuffer(std::size_t bytes)

@@ -1,10 +1,12 @@
 #include "core/motion/lobe_field.h"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 
-#include "core/frame/conventions.h"
 #include "core/kernels/parallel.h"
+#include "core/kernels/variants.h"
 #include "core/motion/glossy_motion.h"
+#include "core/motion/plain_math.h"
 
 namespace holdfast {
 namespace {
@@ -14,34 +16,96 @@ namespace {
 constexpr float kLobeVariance = 0.5f;
 constexpr float kPixelVariance = 2.5f;  // px^2
 
+/// The lobes of a block of pixels.
+struct LobeBlock {
+  const BlockPixels& pixels;
+  const glm::mat4& pixel;
+  float focal_px;
+  const float *roughness, *direction[3], *hit_m;  ///< of the pixels
+  float* out[kEffectFieldChannels];
+};
+
+HOLDFAST_INLINE void measure_block_body(const LobeBlock& a) {
+  const BlockPixels pixels = a.pixels;
+  const Projection now = projection_of(a.pixel);
+  const float *depth = pixels.depth, *nx = pixels.normal[0], *ny = pixels.normal[1],
+              *nz = pixels.normal[2];
+  const float *dx = a.direction[0], *dy = a.direction[1], *dz = a.direction[2];
+  const float *hit_m = a.hit_m, *roughness = a.roughness;
+  float *valid = a.out[kFieldValid], *ratio = a.out[kFieldRatio], *xx = a.out[kFieldPrecision],
+        *xy = a.out[kFieldPrecision + 1], *yy = a.out[kFieldPrecision + 2];
+  const float scale = 1.41421356f * a.focal_px;
+  constexpr float kMost = std::numeric_limits<float>::max();
+#pragma GCC ivdep
+  for (int i = 0; i < pixels.count; ++i) {
+    const float aimed = (dx[i] != 0.0f ? 1.0f : 0.0f) + (dy[i] != 0.0f ? 1.0f : 0.0f) +
+                        (dz[i] != 0.0f ? 1.0f : 0.0f);
+    const float placed = (hit_m[i] >= 0.0f ? 1.0f : 0.0f) * (depth[i] > 0.0f ? 1.0f : 0.0f);
+    const float known = aimed * placed > 0.0f ? 1.0f : 0.0f;
+    const Float3 s = position(pixels, depth, i), n{nx[i], ny[i], nz[i]};
+    const float view_m = __builtin_sqrtf(dot(s, s));
+    // `glossy_spread` of glossy_motion.h.
+    const float finite_share = hit_m[i] / (view_m + hit_m[i]);
+    const float share = hit_m[i] <= kMost ? finite_share : 1.0f;
+    const float alpha = roughness[i] * roughness[i];
+    const float in_plane = min_of(scale * alpha * max_of(share, 0.0f), kWidestGlossySpreadPx);
+    const float out_of_plane = in_plane * abs_of(dot(s, n)) / max_of(view_m, 1e-20f);
+    // `incidence_axis`, likewise.
+    const float step = 1e-3f * view_m;
+    float foot_x, foot_y, foot_found, tip_x, tip_y, tip_found;
+    project_to(now, s, true, foot_x, foot_y, foot_found);
+    project_to(now, {s.x + step * n.x, s.y + step * n.y, s.z + step * n.z}, true, tip_x, tip_y,
+               tip_found);
+    const float ax = tip_x - foot_x, ay = tip_y - foot_y;
+    const float length = __builtin_sqrtf(ax * ax + ay * ay) * foot_found * tip_found;
+    const float inverse = 1.0f / (length > 1e-6f ? length : 1.0f);
+    const float along_x = length > 1e-6f ? ax * inverse : 1.0f;
+    const float along_y = length > 1e-6f ? ay * inverse : 0.0f;
+    // `precision_of_covariance` of effect_field.h.
+    const float in = kLobeVariance * in_plane * in_plane;
+    const float across = kLobeVariance * out_of_plane * out_of_plane;
+    const float vxx = kPixelVariance + in * along_x * along_x + across * along_y * along_y;
+    const float vxy = (in - across) * along_x * along_y;
+    const float vyy = kPixelVariance + in * along_y * along_y + across * along_x * along_x;
+    const float half = 0.5f / max_of(vxx * vyy - vxy * vxy, 1e-12f);
+    valid[i] = known;
+    ratio[i] = 0.0f;
+    xx[i] = known > 0.0f ? vyy * half : 0.0f;
+    xy[i] = known > 0.0f ? -vxy * half : 0.0f;
+    yy[i] = known > 0.0f ? vxx * half : 0.0f;
+  }
+}
+
+HOLDFAST_KERNEL(measure_block, LobeBlock)
+
+/// Most of an image may have no reflections at all.
+bool any_sample(const LobeBlock& block) {
+  bool any = false;
+  for (const float* direction : block.direction)
+    for (int i = 0; i < block.pixels.count; ++i) any |= direction[i] != 0.0f;
+  return any;
+}
+
 }  // namespace
 
 void measure_lobes(const Guides& now, const GlossyPlanes& planes, Channels<float>& out, int first) {
   const glm::mat4 pixel(now.view.pixel_from_relative);
   const float focal_px = 1.0f / static_cast<float>(now.view.pixel_angle);
   for_each_row(now.view.height, [&](int y) {
-    for (int x = 0; x < now.view.width; ++x) {
-      float field[kEffectFieldChannels] = {};
-      const float hit_m = planes.distance->channel(0).at(x, y);
-      const bool sampled = planes.direction->channel(0).at(x, y) != 0.0f ||
-                           planes.direction->channel(1).at(x, y) != 0.0f ||
-                           planes.direction->channel(2).at(x, y) != 0.0f;
-      if (now.depth().at(x, y) > 0.0f && sampled && hit_m >= 0.0f) {
-        const glm::vec3 s = now.position_at(x, y), n = now.normal_at(x, y);
-        const float view_m = glm::length(s);
-        const float cosine = std::abs(glm::dot(s, n)) / std::max(view_m, 1e-20f);
-        const auto spread = glossy_spread(
-            focal_px, ggx_alpha_from_roughness(now.roughness_at(x, y)), view_m, hit_m, cosine);
-        const glm::vec2 a = incidence_axis(pixel, s, n);
-        const float in = kLobeVariance * spread.in_plane * spread.in_plane;
-        const float across = kLobeVariance * spread.out_of_plane * spread.out_of_plane;
-        const glm::vec3 precision = precision_of_covariance(
-            kPixelVariance + in * a.x * a.x + across * a.y * a.y, (in - across) * a.x * a.y,
-            kPixelVariance + in * a.y * a.y + across * a.x * a.x);
-        field[kFieldValid] = 1.0f;
-        for (int k = 0; k < 3; ++k) field[kFieldPrecision + k] = precision[k];
-      }
-      for (int c = 0; c < kEffectFieldChannels; ++c) out[first + c].at(x, y) = field[c];
+    static constexpr float kMirror[kFollowBlock] = {};
+    for (int x = 0; x < now.view.width; x += kFollowBlock) {
+      const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
+      LobeBlock block{pixels,   pixel,
+                      focal_px, now.roughness ? now.roughness[0].row(y) + x : kMirror,
+                      {},       planes.distance->channel(0).row(y) + x,
+                      {}};
+      for (int axis = 0; axis < 3; ++axis)
+        block.direction[axis] = planes.direction->channel(axis).row(y) + x;
+      for (int c = 0; c < kEffectFieldChannels; ++c) block.out[c] = out[first + c].row(y) + x;
+      if (any_sample(block))
+        measure_block(block);
+      else
+        for (float* channel : block.out) std::fill_n(channel, pixels.count, 0.0f);
     }
   });
 }

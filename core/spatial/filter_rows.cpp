@@ -65,10 +65,46 @@ HOLDFAST_INLINE void statistics_kernel_body(const StatisticsRow& a) {
   }
 }
 
+HOLDFAST_INLINE void moment_variance_kernel_body(const MomentVarianceRow& a) {
+  constexpr float kYoungFrames = 4.0f;  // SVGF sec. 4.2
+  const float* __restrict moment_1 = a.moment_1;
+  const float* __restrict moment_2 = a.moment_2;
+  const float* __restrict samples = a.samples;
+  const float* __restrict sample_variance = a.sample_variance;
+  float* __restrict out = a.out;
+  for (int x = 0; x < a.width; ++x) {
+    const float variance = max_of(moment_2[x] - square(moment_1[x]), 0.0f);
+    const float young = max_of(variance, sample_variance[x]) * kYoungFrames / samples[x];
+    // Counts of frames are integers but for rounding, which must not decide.
+    out[x] = samples[x] < kYoungFrames - 0.5f ? young : variance;
+  }
+}
+
+/// The tolerance at x, whose neighbours are columns `left` and `right`.
+HOLDFAST_INLINE float smooth_tolerance(const SmoothToleranceRow& a, int left, int x, int right) {
+  const float *above = a.variance[0], *own = a.variance[1], *below = a.variance[2];
+  const float middle = 0.25f * above[x] + 0.5f * own[x] + 0.25f * below[x];
+  const float beside = 0.25f * (above[left] + above[right]) + 0.5f * (own[left] + own[right]) +
+                       0.25f * (below[left] + below[right]);
+  return 1.0f / (a.sigma * __builtin_sqrtf(0.5f * middle + 0.25f * beside) +
+                 1e-4f * a.luminance[x] + 1e-20f);
+}
+
+HOLDFAST_INLINE void smooth_tolerance_kernel_body(const SmoothToleranceRow& a) {
+  const int last = a.width - 1;
+  float* out = a.out;
+  out[0] = smooth_tolerance(a, 0, 0, min_of(1, last));
+#pragma GCC ivdep
+  for (int x = 1; x < last; ++x) out[x] = smooth_tolerance(a, x - 1, x, x + 1);
+  out[last] = smooth_tolerance(a, max_of(last - 1, 0), last, last);
+}
+
 HOLDFAST_KERNEL(luminance_kernel, LuminanceRow)
 HOLDFAST_KERNEL(tolerance_kernel, ToleranceRow)
 HOLDFAST_KERNEL(narrow_kernel, NarrowRow)
 HOLDFAST_KERNEL(statistics_kernel, StatisticsRow)
+HOLDFAST_KERNEL(moment_variance_kernel, MomentVarianceRow)
+HOLDFAST_KERNEL(smooth_tolerance_kernel, SmoothToleranceRow)
 
 }  // namespace
 
@@ -76,5 +112,7 @@ void luminance_row(const LuminanceRow& row) noexcept { luminance_kernel(row); }
 void tolerance_row(const ToleranceRow& row) noexcept { tolerance_kernel(row); }
 void narrow_row(const NarrowRow& row) noexcept { narrow_kernel(row); }
 void statistics_row(const StatisticsRow& row) noexcept { statistics_kernel(row); }
+void moment_variance_row(const MomentVarianceRow& row) noexcept { moment_variance_kernel(row); }
+void smooth_tolerance_row(const SmoothToleranceRow& row) noexcept { smooth_tolerance_kernel(row); }
 
 }  // namespace holdfast

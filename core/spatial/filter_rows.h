@@ -49,4 +49,24 @@ struct StatisticsRow {
 };
 void statistics_row(const StatisticsRow& row) noexcept;
 
+/// SVGF's variance: out = max(moment_2 - moment_1^2, 0); where `samples`, frames of history, are
+/// fewer than 4, 4 / samples times the larger of that and `sample_variance` (SVGF sec. 4.2).
+struct MomentVarianceRow {
+  const float *moment_1, *moment_2, *samples, *sample_variance;
+  int width;
+  float* out;
+};
+void moment_variance_row(const MomentVarianceRow& row) noexcept;
+
+/// SVGF's tolerance: out = 1 / (sigma sqrt(v) + 1e-4 luminance + 1e-20), v the 3x3 Gaussian of the
+/// variance, whose rows above, at and below the pixels are given; columns beyond the borders repeat
+/// them (SVGF sec. 4.4).
+struct SmoothToleranceRow {
+  const float *variance[3], *luminance;
+  float sigma;
+  int width;
+  float* out;
+};
+void smooth_tolerance_row(const SmoothToleranceRow& row) noexcept;
+
 }  // namespace holdfast

@@ -13,12 +13,6 @@ struct Signal {
   ChannelView<const float> samples;            ///< number of equal samples behind each pixel, >= 1
   ChannelView<const float> sample_variance;    ///< variance of the luminance of one sample, > 0
   const Channels<float>* footprint = nullptr;  ///< E, F, G of FilterRow; null: none
-
-  /// Luminance of pixel (x, y); the value itself for one channel.
-  float luminance_at(int x, int y) const {
-    const Channels<float>& v = *values;
-    return channels == 1 ? v[0].at(x, y) : luminance(v[0].at(x, y), v[1].at(x, y), v[2].at(x, y));
-  }
 };
 
 /// Scratch of the spatial filters.

@@ -1,28 +1,15 @@
 #include "core/spatial/svgf_filter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/kernels/parallel.h"
+#include "core/spatial/filter_rows.h"
 
 namespace holdfast {
 namespace {
 
 constexpr float kLuminanceSigma = 4.0f;  // SVGF sec. 4.4
-constexpr float kYoungFrames = 4.0f;     // SVGF sec. 4.2
-
-/// 3x3 Gaussian of the variance at (x, y), borders repeated (SVGF sec. 4.4).
-float smooth_variance(ChannelView<const float> variance, int x, int y) {
-  static constexpr float kGauss[2] = {0.5f, 0.25f};
-  float sum = 0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i)
-      sum += kGauss[std::abs(i)] * kGauss[std::abs(j)] *
-             variance.at(std::clamp(x + i, 0, variance.width - 1),
-                         std::clamp(y + j, 0, variance.height - 1));
-  return sum;
-}
 
 }  // namespace
 
@@ -31,27 +18,26 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
                  Channels<float>& feedback, Plane& out) {
   const int width = guides.view.width, height = guides.view.height;
   for_each_row(height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const float frames = signal.samples.at(x, y), mean = moment_1.at(x, y);
-      float variance = std::max(moment_2.at(x, y) - mean * mean, 0.0f);
-      // Counts of frames are integers but for rounding, which must not decide.
-      if (frames < kYoungFrames - 0.5f)
-        variance = std::max(variance, signal.sample_variance.at(x, y)) * kYoungFrames / frames;
-      s.spread[0].at(x, y) = variance;
-    }
+    moment_variance_row({moment_1.row(y), moment_2.row(y), signal.samples.row(y),
+                         signal.sample_variance.row(y), width, s.spread[0].row(y)});
   });
   for (int level = 0; level < levels; ++level) {
-    const Signal from{
-        level == 0 ? signal.values : (level % 2 == 1 ? &s.even : &s.odd), signal.channels, {}, {}};
+    const Channels<float>& from = level == 0 ? *signal.values : (level % 2 == 1 ? s.even : s.odd);
     Channels<float>& to = level % 2 == 0 ? s.even : s.odd;
     const auto variance = std::as_const(s.spread)[level % 2];
+    const int last = signal.channels - 1;
     for_each_row(height, [&](int y) {
-      for (int x = 0; x < width; ++x) {
-        const float l = from.luminance_at(x, y);
-        s.guide[0].at(x, y) = l;
-        s.guide[1].at(x, y) = 1.0f / (kLuminanceSigma * std::sqrt(smooth_variance(variance, x, y)) +
-                                      1e-4f * l + 1e-20f);
-      }
+      luminance_row({{from[0].row(y), from[last / 2].row(y), from[last].row(y)},
+                     signal.channels,
+                     width,
+                     s.guide[0].row(y),
+                     nullptr});
+      smooth_tolerance_row({{variance.row(std::max(y - 1, 0)), variance.row(y),
+                             variance.row(std::min(y + 1, height - 1))},
+                            std::as_const(s.guide)[0].row(y),
+                            kLuminanceSigma,
+                            width,
+                            s.guide[1].row(y)});
     });
     FilterRow pass;
     pass.guides = &guides;
@@ -63,7 +49,7 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
     pass.luminance = std::as_const(s.guide)[0];
     pass.inverse_luminance_sigma = std::as_const(s.guide)[1];
     for (int c = 0; c < signal.channels; ++c) {
-      pass.in[c] = (*from.values)[c];
+      pass.in[c] = from[c];
       pass.out[c] = level + 1 == levels ? out.channel(c) : to[c];
     }
     filter_image(pass);

@@ -52,6 +52,34 @@ TEST_F(Bench, TakesASequenceAtItsOwnSize) {
   EXPECT_EQ(json["stages"][0]["reference_ns_per_pixel"], 0.0);
 }
 
+TEST_F(Bench, KeepsTheSignalsThatItIsAskedFor) {
+  const auto json = bench({"--scene", "room", "--size", "48x27", "--no-reference", "--signals",
+                           "visibility,indirect", "--quiet"});
+  bool visibility = false, indirect = false;
+  for (const auto& stage : json["stages"]) {
+    const std::string name = stage["stage"];
+    EXPECT_EQ(name.find("glossy"), std::string::npos) << name;
+    visibility |= name == "light0.visibility.filter";
+    indirect |= name == "indirect.filter";
+  }
+  EXPECT_TRUE(visibility);
+  EXPECT_TRUE(indirect);
+  EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--signals", "glossy"}), 2);
+  EXPECT_NE(text.find("must name what the scene has"), std::string::npos) << text;
+  EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--signals", "shadows"}), 2);
+}
+
+TEST_F(Bench, TimesOneSignalUnderSvgf) {
+  const auto json =
+      bench({"--scene", "occluder", "--size", "96x54", "--threads", "1", "--one-signal"});
+  EXPECT_GT(json["one_signal"]["us_per_pixel"].get<double>(), 0);
+  EXPECT_GT(json["one_signal"]["reference_us_per_pixel"].get<double>(),
+            json["one_signal"]["us_per_pixel"].get<double>());
+  EXPECT_NE(text.find("one signal, svgf, 4 levels"), std::string::npos) << text;
+  EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--one-signal"}), 2);
+  EXPECT_NE(text.find("needs a scene with indirect light or reflections"), std::string::npos);
+}
+
 TEST_F(Bench, RefusesAnUnknownRecipeOrSize) {
   EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--recipes", "none"}), 2);
   EXPECT_NE(text.find("recipe must be one of"), std::string::npos) << text;

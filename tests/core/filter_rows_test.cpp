@@ -1,5 +1,6 @@
 #include "core/spatial/filter_rows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -108,6 +109,50 @@ TEST(FilterRows, StatisticsHaveAFloorAndFootprintsFadeWithoutBlockers) {
       for (const auto& f : footprint)
         ASSERT_NEAR(f[x], double(precision[x]) / std::max(double(valid[x]), 1e-3), 50 * kRounding)
             << "a footprint that almost nothing speaks for is none";
+    }
+  });
+}
+
+TEST(FilterRows, MomentVarianceGrowsWhereHistoryIsYoung) {
+  test::Random random(75);
+  everywhere([&](int width) {
+    const auto mean = random_row(random, width), square = random_row(random, width),
+               sample = random_row(random, width);
+    auto frames = random_row(random, width);
+    for (std::size_t x = 0; x < frames.size(); ++x) frames[x] = 1.0f + static_cast<float>(x % 6);
+    std::vector<float> out(mean.size());
+    moment_variance_row(
+        {mean.data(), square.data(), frames.data(), sample.data(), width, out.data()});
+    for (std::size_t x = 0; x < mean.size(); ++x) {
+      const double variance = std::max(double(square[x]) - double(mean[x]) * double(mean[x]), 0.0);
+      const double young = std::max(variance, double(sample[x])) * 4 / double(frames[x]);
+      ASSERT_NEAR(out[x], frames[x] < 4 ? young : variance, 20 * kRounding) << "of up to 16";
+    }
+  });
+}
+
+TEST(FilterRows, SmoothToleranceIsOfAGaussianOfNineWhoseBordersRepeat) {
+  constexpr double kGauss[2] = {0.5, 0.25};
+  test::Random random(76);
+  everywhere([&](int width) {
+    std::vector<float> variance[3];
+    for (auto& row : variance) row = random_row(random, width);
+    const auto luminance = random_row(random, width);
+    std::vector<float> out(luminance.size());
+    smooth_tolerance_row({{variance[0].data(), variance[1].data(), variance[2].data()},
+                          luminance.data(),
+                          4.0f,
+                          width,
+                          out.data()});
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i)
+          sum += kGauss[std::abs(i)] * kGauss[std::abs(j)] *
+                 double(variance[j + 1][static_cast<std::size_t>(std::clamp(x + i, 0, width - 1))]);
+      const auto at = static_cast<std::size_t>(x);
+      const double want = 1 / (4 * std::sqrt(sum) + 1e-4 * double(luminance[at]));
+      ASSERT_NEAR(out[at], want, kRounding * want) << x;
     }
   });
 }

@@ -1,0 +1,160 @@
+#pragma once
+
+#include "core/kernels/math.h"
+#include "core/spatial/guided_filter.h"
+#include "core/spatial/tangent_planes.h"
+
+/// The taps of guided_filter.cpp, for a block of a row's pixels at once.
+namespace holdfast {
+
+inline constexpr int kFilterBlock = 64;  // pixels; the block's state stays in the first cache
+
+/// Per-pixel terms of a block: the tangent plane, the normal (times its power) and the running
+/// sums.
+struct FilterBlock : TangentPlanes<kFilterBlock> {
+  float weight_sum[kFilterBlock], spread_sum[kFilterBlock];
+  float sum[kMaxFilterChannels][kFilterBlock];
+  const float *luminance, *inverse_sigma;  // of the pixels; null where the pass has none
+  const float *footprint_xx, *footprint_xy, *footprint_yy;
+};
+
+/// What a tap is weighed by and adds: rows of the images, all at the row of the tap.
+struct TapRow {
+  const float *depth, *nx, *ny, *nz, *luminance, *spread, *in[kMaxFilterChannels];
+  float normal_power;
+};
+
+template <int C, bool kLuminance>
+HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
+  TapRow t{};
+  t.depth = a.guides->depth().row(qy) + x0;
+  t.nx = a.guides->normal(0).row(qy) + x0;
+  t.ny = a.guides->normal(1).row(qy) + x0;
+  t.nz = a.guides->normal(2).row(qy) + x0;
+  if constexpr (kLuminance) t.luminance = a.luminance.row(qy) + x0;
+  t.spread = a.spread_in.row(qy) + x0;
+  for (int c = 0; c < C; ++c) t.in[c] = a.in[c].row(qy) + x0;
+  t.normal_power = a.weights.normal_power;
+  return t;
+}
+
+/// One pixel's terms for the taps of one row.
+struct FilterPixel {
+  float plane, plane_x, offset, offset_x, nx, ny, nz, luminance, inverse_sigma;
+  float footprint, footprint_x, footprint_xx;
+};
+
+/// A pixel's running sums.
+template <int C>
+struct FilterSums {
+  float weight, spread, value[C];
+};
+
+template <bool kLuminance, bool kFootprint>
+HOLDFAST_INLINE FilterPixel load_pixel(const FilterBlock& b, int i, float dy) {
+  FilterPixel p;
+  p.plane = b.plane_0[i] + dy * b.plane_y[i];
+  p.plane_x = b.plane_x[i];
+  p.offset = b.offset_0[i] + dy * b.offset_y[i];
+  p.offset_x = b.offset_x[i];
+  p.nx = b.nx[i];
+  p.ny = b.ny[i];
+  p.nz = b.nz[i];
+  if constexpr (kLuminance) {
+    p.luminance = b.luminance[i];
+    p.inverse_sigma = b.inverse_sigma[i];
+  }
+  if constexpr (kFootprint) {
+    p.footprint = dy * dy * b.footprint_yy[i];
+    p.footprint_x = 2.0f * dy * b.footprint_xy[i];
+    p.footprint_xx = b.footprint_xx[i];
+  }
+  return p;
+}
+
+template <int C>
+HOLDFAST_INLINE FilterSums<C> load_sums(const FilterBlock& b, int i) {
+  FilterSums<C> s;
+  s.weight = b.weight_sum[i];
+  s.spread = b.spread_sum[i];
+  s.value[0] = b.sum[0][i];
+  if constexpr (C > 1) s.value[1] = b.sum[1][i];
+  if constexpr (C > 2) s.value[2] = b.sum[2][i];
+  if constexpr (C > 3) s.value[3] = b.sum[3][i];
+  if constexpr (C > 4) s.value[4] = b.sum[4][i];
+  if constexpr (C > 5) s.value[5] = b.sum[5][i];
+  if constexpr (C > 6) s.value[6] = b.sum[6][i];
+  return s;
+}
+
+template <int C>
+HOLDFAST_INLINE void store_sums(const FilterSums<C>& s, FilterBlock& b, int i) {
+  b.weight_sum[i] = s.weight;
+  b.spread_sum[i] = s.spread;
+  b.sum[0][i] = s.value[0];
+  if constexpr (C > 1) b.sum[1][i] = s.value[1];
+  if constexpr (C > 2) b.sum[2][i] = s.value[2];
+  if constexpr (C > 3) b.sum[3][i] = s.value[3];
+  if constexpr (C > 4) b.sum[4][i] = s.value[4];
+  if constexpr (C > 5) b.sum[5][i] = s.value[5];
+  if constexpr (C > 6) b.sum[6][i] = s.value[6];
+}
+
+/// Where a tap lies: what the pixel's terms come to there.
+struct TapPlace {
+  float plane, offset, footprint;
+};
+
+template <bool kFootprint>
+HOLDFAST_INLINE TapPlace place_of(const FilterPixel& p, float dx) {
+  TapPlace at{p.plane + dx * p.plane_x, p.offset + dx * p.offset_x, 0.0f};
+  if constexpr (kFootprint) at.footprint = p.footprint + dx * (p.footprint_x + dx * p.footprint_xx);
+  return at;
+}
+
+template <bool kFootprint>
+HOLDFAST_INLINE TapPlace own_place(const FilterPixel& p) {
+  return {p.plane, p.offset, kFootprint ? p.footprint : 0.0f};
+}
+
+/// Adds the tap at row position `q`; `bits`: weight_bits of its kernel weight.
+template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void add_tap(const TapRow& t, int q, const TapPlace& at, float bits,
+                             const FilterPixel& p, FilterSums<C>& s) {
+  const float e = t.depth[q] * at.plane + at.offset;
+  const float turned = t.normal_power - p.nx * t.nx[q] - p.ny * t.ny[q] - p.nz * t.nz[q];
+  float exponent = abs_of(e) + positive_part(turned);
+  if constexpr (kLuminance) exponent += abs_of(t.luminance[q] - p.luminance) * p.inverse_sigma;
+  if constexpr (kFootprint) exponent += at.footprint;
+  const float g = weight_exp(bits, exponent);
+  const float w = kSpread == Spread::kSamples ? g * t.spread[q] : g;
+  s.weight += w;
+  s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
+  s.value[0] += w * t.in[0][q];
+  if constexpr (C > 1) s.value[1] += w * t.in[1][q];
+  if constexpr (C > 2) s.value[2] += w * t.in[2][q];
+  if constexpr (C > 3) s.value[3] += w * t.in[3][q];
+  if constexpr (C > 4) s.value[4] += w * t.in[4][q];
+  if constexpr (C > 5) s.value[5] += w * t.in[5][q];
+  if constexpr (C > 6) s.value[6] += w * t.in[6][q];
+}
+
+/// Adds the taps of one row, whose kernel's weights have these bits by distance.
+template <int C, bool kLuminance, Spread kSpread, bool kFootprint, int kRadius>
+HOLDFAST_INLINE void add_row_taps(const TapRow& t, int i, int step, const float (&bits)[3],
+                                  const FilterPixel& p, FilterSums<C>& s) {
+  const float dx = static_cast<float>(step);
+  if constexpr (kRadius > 1)
+    add_tap<C, kLuminance, kSpread, kFootprint>(t, i - 2 * step,
+                                                place_of<kFootprint>(p, -2.0f * dx), bits[2], p, s);
+  add_tap<C, kLuminance, kSpread, kFootprint>(t, i - step, place_of<kFootprint>(p, -dx), bits[1], p,
+                                              s);
+  add_tap<C, kLuminance, kSpread, kFootprint>(t, i, own_place<kFootprint>(p), bits[0], p, s);
+  add_tap<C, kLuminance, kSpread, kFootprint>(t, i + step, place_of<kFootprint>(p, dx), bits[1], p,
+                                              s);
+  if constexpr (kRadius > 1)
+    add_tap<C, kLuminance, kSpread, kFootprint>(t, i + 2 * step, place_of<kFootprint>(p, 2.0f * dx),
+                                                bits[2], p, s);
+}
+
+}  // namespace holdfast
