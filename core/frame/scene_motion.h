@@ -34,6 +34,9 @@ class SceneMotion {
   /// Becomes `full` in pixels of twice the size (ViewGeometry::halved).
   void follow_halved(const SceneMotion& full);
 
+  /// The last frame counts as one of that size, by the same camera.
+  void resize(int width, int height);
+
   /// Forgets the past: the next frame counts as the first.
   void reset();
 

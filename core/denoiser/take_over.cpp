@@ -1,0 +1,32 @@
+#include "core/denoiser/take_over.h"
+
+#include <algorithm>
+
+#include "core/frame/error.h"
+#include "core/history/resample.h"
+
+namespace holdfast {
+
+void check_same_scene(const DenoiserConfig& config, const DenoiserConfig& before) {
+  const auto same = [](const Light& a, const Light& b) {
+    return a.id == b.id && a.shape == b.shape && a.width == b.width && a.height == b.height &&
+           a.radius == b.radius && a.radiance == b.radiance;
+  };
+  if (config.planes != before.planes ||
+      !std::equal(config.lights.begin(), config.lights.end(), before.lights.begin(),
+                  before.lights.end(), same))
+    throw InputError("lights and planes", "must be those of the denoiser before", "others");
+}
+
+void take_over(const KeptParts& kept, const TakingParts& taking) {
+  resample_guides(kept.guides, taking.guides);
+  if (taking.plan.half.any) taking.half.remember(taking.guides);
+  for (std::size_t k = 0; k < taking.filters.size(); ++k) {
+    const bool was_half = kept.plan.components[k].half, is_half = taking.plan.components[k].half;
+    resample_history(was_half ? kept.half.guides() : kept.guides,
+                     is_half ? taking.half.guides() : taking.guides, kept.filters[k].history(),
+                     taking.filters[k].history());
+  }
+}
+
+}  // namespace holdfast
