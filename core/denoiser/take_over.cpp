@@ -20,12 +20,16 @@ void check_same_scene(const DenoiserConfig& config, const DenoiserConfig& before
 
 void take_over(const KeptParts& kept, const TakingParts& taking) {
   resample_guides(kept.guides, taking.guides);
+  const auto pixels = [](const Guides& guides) {
+    return static_cast<float>(guides.view.width) * static_cast<float>(guides.view.height);
+  };
+  const float share = std::min(1.0f, pixels(kept.guides) / pixels(taking.guides));
   if (taking.plan.half.any) taking.half.remember(taking.guides);
   for (std::size_t k = 0; k < taking.filters.size(); ++k) {
     const bool was_half = kept.plan.components[k].half, is_half = taking.plan.components[k].half;
     resample_history(was_half ? kept.half.guides() : kept.guides,
-                     is_half ? taking.half.guides() : taking.guides, kept.filters[k].history(),
-                     taking.filters[k].history());
+                     is_half ? taking.half.guides() : taking.guides, share,
+                     kept.filters[k].history(), taking.filters[k].history());
   }
 }
 

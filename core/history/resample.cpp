@@ -87,8 +87,8 @@ void resample_guides(const Guides& before, Guides& now) {
   });
 }
 
-void resample_history(const Guides& before, const Guides& now, const ComponentHistory& from,
-                      ComponentHistory& to) {
+void resample_history(const Guides& before, const Guides& now, float share,
+                      const ComponentHistory& from, ComponentHistory& to) {
   const bool alike = from.extras == to.extras;
   const int count = alike ? to.data.count() : to.channels + 1;
   const int width = now.view.width;
@@ -105,6 +105,7 @@ void resample_history(const Guides& before, const Guides& now, const ComponentHi
         if (!taps.any()) taps = identity_taps(before, place.x, place.y);
       }
       for (int c = 0; c < count; ++c) to.data[c].at(x, y) = gather(from.data[c], taps);
+      to.samples().at(x, y) *= share;
     }
     if (!alike) begin_extras(y, to);
   });
