@@ -23,7 +23,9 @@ void take_over(const KeptParts& kept, const TakingParts& taking) {
   const auto pixels = [](const Guides& guides) {
     return static_cast<float>(guides.view.width) * static_cast<float>(guides.view.height);
   };
-  const float share = std::min(1.0f, pixels(kept.guides) / pixels(taking.guides));
+  const float pixel_share = std::min(1.0f, pixels(kept.guides) / pixels(taking.guides));
+  // Squared: ours, tuned on fence, whose thin shadows a coarser history lacks, and glossy-floor.
+  const float share = pixel_share * pixel_share;
   if (taking.plan.half.any) taking.half.remember(taking.guides);
   for (std::size_t k = 0; k < taking.filters.size(); ++k) {
     const bool was_half = kept.plan.components[k].half, is_half = taking.plan.components[k].half;

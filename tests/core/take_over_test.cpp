@@ -65,13 +65,13 @@ TEST(TakeOver, OfAnotherSizeIsBetterThanAFreshStartAndNearASessionThatAlwaysHadT
       fresh.filter(frame, anew);
       const PlaneSet best = test::filtered(always, frame);
       EXPECT_FALSE(report.history_reset);
-      EXPECT_GT(report.mean_history_frames, 3.0);
+      EXPECT_GT(report.mean_history_frames, 1.5) << "a fresh start has 1";
       for (const PlaneId id : {test::kGlossyPlane, test::kIndirectPlane}) {
         const double error = rms_around(kept.at(id), 0.5);
         const std::string where = preset + ' ' + std::to_string(width) + ' ' + plane_name(id);
-        // At twice the pixels each history pixel is shared by as many.
+        // At twice the pixels a quarter of the samples count.
         EXPECT_LT(error, 0.95 * rms_around(anew.at(id), 0.5)) << where;
-        EXPECT_LT(error, 1.5 * rms_around(best.at(id), 0.5)) << where;
+        EXPECT_LT(error, 1.7 * rms_around(best.at(id), 0.5)) << where;
       }
     }
 }

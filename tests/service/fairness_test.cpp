@@ -3,6 +3,7 @@
 // machine has other work.
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "tests/service/fault_fixture.h"
 
@@ -42,8 +43,12 @@ class Fairness : public Fault {
     double ratio = HUGE_VAL;
     for (int attempt = 0; attempt < 4 && ratio > most; ++attempt) {
       const auto alone = times(session, 30);
-      std::atomic<bool> stop{false};
-      std::thread other([&] { flood(stop); });
+      std::atomic<bool> stop{false}, ready{false};
+      std::thread other([&] {
+        flood(stop, ready);
+        ready = true;
+      });
+      for (int i = 0; i < 1000 && !ready; ++i) std::this_thread::sleep_for(10ms);
       std::this_thread::sleep_for(100ms);
       const auto beside = times(session, 30);
       stop = true;
@@ -67,7 +72,8 @@ TEST_F(Fairness, FloodOfSessionsIsRefusedAndSlowsNobodyDown) {
   std::atomic<int> refused{0};
   expect_fair(
       session,
-      [&](const std::atomic<bool>& stop) {
+      [&](const std::atomic<bool>& stop, std::atomic<bool>& ready) {
+        ready = true;
         RawClient client(socket.address());
         for (; !stop; std::this_thread::sleep_for(1ms))
           refused += client.create(config).ok() ? 0 : 1;
@@ -81,7 +87,8 @@ TEST_F(Fairness, FloodOfFramesIsHeldToItsRate) {
   Session session = connect();
   expect_fair(
       session,
-      [&](const std::atomic<bool>& stop) {
+      [&](const std::atomic<bool>& stop, std::atomic<bool>& ready) {
+        ready = true;
         Session greedy = connect();
         std::thread sender([&] {
           for (int i = 0; !stop; ++i) greedy.submit(test::small_frame(config, i));
@@ -100,7 +107,8 @@ TEST_F(Fairness, FloodOfBytesIsHeldToItsRate) {
   const DenoiserConfig large = test::small_config(640, 400);
   expect_fair(
       session,
-      [&](const std::atomic<bool>& stop) {
+      [&](const std::atomic<bool>& stop, std::atomic<bool>& ready) {
+        ready = true;
         RawClient client(socket.address());
         if (!client.create(large).ok()) return;
         RawStream stream(client);
@@ -124,15 +132,20 @@ TEST_F(Fairness, SlowReaderSlowsNobodyDown) {
   const DenoiserConfig large = test::small_config(640, 400);
   expect_fair(
       session,
-      [&](const std::atomic<bool>& stop) {
+      [&](const std::atomic<bool>& stop, std::atomic<bool>& ready) {
         RawClient client(socket.address());
         if (!client.create(large).ok()) return;
         RawStream stream(client);
         stream.attach();
         std::thread writer([&] {  // more than the windows hold; nothing is read
-          for (int i = 0; i < 12 && stream.write(test::small_frame(large, i), large); ++i) {
+          for (int i = 0; i < 40 && stream.write(test::small_frame(large, i), large); ++i) {
           }
         });
+        for (std::uint64_t filtered = 0, before = 1; filtered != before;) {  // until it is stuck
+          std::this_thread::sleep_for(500ms);
+          before = std::exchange(filtered, client.get().frames());
+        }
+        ready = true;
         while (!stop) std::this_thread::sleep_for(5ms);
         stream.cancel();
         writer.join();
@@ -145,7 +158,8 @@ TEST_F(Fairness, SessionThatFiltersAllTheTimeTakesNoMoreThanItsShare) {
   Session session = connect();
   expect_fair(
       session,
-      [&](const std::atomic<bool>& stop) {
+      [&](const std::atomic<bool>& stop, std::atomic<bool>& ready) {
+        ready = true;
         Session busy = connect();
         for (int i = 0; !stop; ++i) {
           busy.submit(test::small_frame(config, i));
