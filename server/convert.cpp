@@ -105,6 +105,12 @@ void read_transforms(const char* what,
   }
 }
 
+void check_budget(const SessionConfig& config) {
+  if (config.budget_ms > 0 && config.denoiser.preset == "reference")
+    throw InputError("budget", "must be 0 with preset reference, which no other can stand in for",
+                     std::to_string(config.budget_ms));
+}
+
 double ms_between(FrameSlot::TimePoint a, FrameSlot::TimePoint b) {
   return std::chrono::duration<double, std::milli>(b - a).count();
 }
@@ -139,11 +145,19 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
   if (!(config.budget_ms >= 0) || !std::isfinite(config.budget_ms))
     throw InputError("budget", "must be finite and at least 0 ms",
                      std::to_string(config.budget_ms));
-  if (config.budget_ms > 0 && core.preset == "reference")
-    throw InputError("budget", "must be 0 with preset reference, which no other can stand in for",
-                     std::to_string(config.budget_ms));
+  check_budget(config);
   config.latest = request.late_frames() == v1::LATE_FRAMES_LATEST;
   config.results = results_from(request, core);
+  return config;
+}
+
+SessionConfig changed_config(const v1::SessionChange& change, SessionConfig config) {
+  DenoiserConfig& core = config.denoiser;
+  if (change.width_px() != 0) core.width = checked_dimension("width", change.width_px());
+  if (change.height_px() != 0) core.height = checked_dimension("height", change.height_px());
+  core.recipe = checked_name("recipe", change.recipe(), recipe_names(), core.recipe);
+  core.preset = checked_name("preset", change.preset(), preset_names(), core.preset);
+  check_budget(config);
   return config;
 }
 
@@ -151,6 +165,9 @@ void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config,
   frame.index = begin.index();
   frame.cut = begin.cut();
   const std::string subject = "camera of frame " + std::to_string(begin.index());
+  if (!(begin.deadline_ms() >= 0) || !std::isfinite(begin.deadline_ms()))
+    throw InputError("deadline of frame " + std::to_string(begin.index()),
+                     "must be finite and at least 0 ms", std::to_string(begin.deadline_ms()));
   if (!begin.has_camera()) throw InputError(subject, "must be present", "missing");
   const v1::Camera& camera = begin.camera();
   frame.camera.view_from_world = matrix_from(
@@ -182,6 +199,7 @@ void write_frame_result(const FrameSlot& slot, const SessionConfig& config,
   const FrameReport& report = slot.answer->report;
   result.set_repeated(slot.repeated);
   result.set_dropped(slot.answer->dropped);
+  result.set_deadline_passed(slot.late);
   if (slot.answer->dropped) return;
   result.set_preset(report.preset);
   timing.set_core_ms(report.ms);

@@ -15,6 +15,9 @@ namespace holdfast::server {
 /// Throws InputError naming what breaks a rule.
 SessionConfig session_config_from(const v1::CreateSessionRequest& request);
 
+/// `config` as `change` makes it; its `preset_ms` are those of before. Throws InputError.
+SessionConfig changed_config(const v1::SessionChange& change, SessionConfig config);
+
 /// Index, cut, camera and transforms of a frame; its planes are untouched. Throws InputError.
 void read_frame_header(const v1::FrameBegin& begin, const SessionConfig& config, Frame& frame);
 

@@ -3,6 +3,8 @@
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
 #include "server/error.h"
+#include "server/late_frames.h"
+#include "server/session_change.h"
 #include "server/status.h"
 
 namespace holdfast::server {
@@ -88,7 +90,8 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   watch_ = attached.watch;
   hold_ = attached.hold;
   heir_ = attached.taken_over;
-  assembler_.emplace(session_->config());
+  config_ = session_->config();
+  assembler_.emplace(*config_);
   deadlines_.greeted();
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
@@ -108,16 +111,23 @@ bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
   FrameSlot* const slot = free_slot();
   const auto wait = slot ? rates_->admit_frame(Clock::now()) : SessionRates::Duration::zero();
   stalled_ = !slot || wait > SessionRates::Duration::zero();
-  if (!stalled_) {
-    assembler_->begin(begin, *slot);
-    open_ = slot;
-    slot->decode = slot->encode = {};
-    deadlines_.frame_begun(slot->begun);
-  } else if (slot) {
+  if (!stalled_) begin_frame(begin, *slot);
+  if (stalled_ && slot) {
     free_.push_back(slot);
     hold_reading(wait);
   }
   return !stalled_;
+}
+
+void DenoiseStream::begin_frame(const v1::FrameBegin& begin, FrameSlot& slot) {
+  const auto refusal = take_change(state_, session_, begin, config_, slot.reserved);
+  slot.config = config_;
+  assembler_->follow(*config_);
+  assembler_->begin(begin, slot);
+  if (refusal) slot.error = refusal;
+  open_ = &slot;
+  slot.decode = slot.encode = {};
+  deadlines_.frame_begun(slot.begun);
 }
 
 /// Nothing is read for that long: the windows of HTTP/2 fill, and the client waits.
@@ -156,27 +166,32 @@ void DenoiseStream::read_on() {
 void DenoiseStream::post(FrameSlot& slot) {
   deadlines_.frame_ended();
   if (!slot.error) ++waiting_;
-  state_.scheduler.post(session_->strand(),
-                        [self = shared_from_this(), &slot] { self->filter(slot); });
+  state_.scheduler.post(
+      session_->strand(), [self = shared_from_this(), &slot] { self->filter(slot); },
+      slot.deadline);
 }
 
 void DenoiseStream::filter(FrameSlot& slot) {
   slot.started = Clock::now();
-  bool wanted = true, late = false;
+  bool wanted = true, newer_waits = false;
   {
     const std::lock_guard lock(mutex_);
     wanted = !broken_;
-    if (!slot.error) late = --waiting_ > 0 && session_->config().latest;
+    if (!slot.error) newer_waits = --waiting_ > 0;
   }
+  const FrameTurn turn(slot.started, slot.deadline, slot.config->latest, newer_waits);
   if (wanted && slot.error) session_->count_error();
   if (wanted && !slot.error) try {
       slot.answer = session_->repeat(slot.frame.index, slot.epoch);
       slot.repeated = slot.answer != nullptr;
-      if (!slot.answer && late) slot.answer = session_->drop(slot.frame, slot.epoch);
-      if (!slot.answer) slot.answer = session_->filter(slot.frame, slot.epoch, slot.ended);
+      slot.late = turn.late && !slot.repeated;
+      if (!slot.answer && turn.drop) slot.answer = session_->drop(slot.frame, slot.epoch);
+      if (!slot.answer)
+        slot.answer = session_->filter(slot.frame, slot.epoch, slot.ended, slot.config);
     } catch (...) {
       slot.error = frame_error_from(std::current_exception());
     }
+  slot.reserved.reset();
   slot.answered = Clock::now();
   if (wanted) log_frame(slot);
   if (wanted && state_.config.admin_previews) show_frame(slot);
@@ -242,7 +257,7 @@ bool DenoiseStream::next_response() {
     return true;
   }
   while (!sending_.empty()) {
-    if (!sender_) sender_.emplace(*sending_.front(), session_->config(), coder_);
+    if (!sender_) sender_.emplace(*sending_.front(), *sending_.front()->config, coder_);
     if (encode(*sending_.front())) return true;
     sender_.reset();
     FrameSlot& sent = *sending_.front();

@@ -65,6 +65,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void handle_hello(const v1::Hello& hello);
   bool handle_frame_begin(const v1::FrameBegin& begin);
   FrameSlot* free_slot();
+  void begin_frame(const v1::FrameBegin& begin, FrameSlot& slot);
   void hold_reading(SessionRates::Duration time);
   void begin_stalled();
   void post(FrameSlot& slot);
@@ -92,8 +93,9 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   mutable std::mutex mutex_;
   StreamDeadlines deadlines_;
   std::shared_ptr<Session> session_;
-  SessionLife::Hold hold_ = 0;  ///< on session_
-  bool heir_ = false;           ///< an older stream of the session has to be ended
+  SessionLife::Hold hold_ = 0;                   ///< on session_
+  std::shared_ptr<const SessionConfig> config_;  ///< of the frame that came last
+  bool heir_ = false;                            ///< an older stream of the session has to be ended
   std::shared_ptr<SessionWatch> watch_;
   std::shared_ptr<SessionRates> rates_;
   std::optional<SessionRates::TimePoint> read_due_;  ///< nothing is read before, for `rates_`

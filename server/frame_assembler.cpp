@@ -9,6 +9,8 @@
 namespace holdfast::server {
 namespace {
 
+constexpr double kLongestDeadlineMs = 3.6e6;  // an hour: none, for a frame
+
 std::string size_text(std::uint64_t width, std::uint64_t height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
@@ -43,25 +45,30 @@ void FrameAssembler::begin(const v1::FrameBegin& message, FrameSlot& slot) {
   slot.error.reset();
   slot.begun = std::chrono::steady_clock::now();
   slot.answer.reset();
-  slot.repeated = false;
+  slot.repeated = slot.late = false;
+  slot.deadline.reset();
   slot.frame.index = message.index();
   slot.epoch = message.epoch();
-  progress_.assign(config_.denoiser.planes.size(), {});
+  progress_.assign(config_->denoiser.planes.size(), {});
   try {
-    read_frame_header(message, config_, slot.frame);
+    read_frame_header(message, *config_, slot.frame);
+    if (message.deadline_ms() > 0)
+      slot.deadline = slot.begun + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                       std::chrono::duration<double, std::milli>(
+                                           std::min(message.deadline_ms(), kLongestDeadlineMs)));
     for (const v1::FramePlane& plane : message.planes()) announce(plane);
     for (std::size_t i = 0; i < progress_.size(); ++i) {
-      const PlaneId id = config_.denoiser.planes[i];
+      const PlaneId id = config_->denoiser.planes[i];
       if (progress_[i].size == 0)
         throw InputError("plane " + plane_name(id), "must be announced in FrameBegin", "missing");
     }
     // Planes are added before pointers to them are taken: adding may move the others.
-    for (const PlaneId id : config_.denoiser.planes) {
-      const auto size = plane_size(id, config_.denoiser.width, config_.denoiser.height);
+    for (const PlaneId id : config_->denoiser.planes) {
+      const auto size = plane_size(id, config_->denoiser.width, config_->denoiser.height);
       slot.frame.planes.add(id, size.width, size.height);
     }
     for (std::size_t i = 0; i < progress_.size(); ++i)
-      progress_[i].plane = slot.frame.planes.find(config_.denoiser.planes[i]);
+      progress_[i].plane = slot.frame.planes.find(config_->denoiser.planes[i]);
   } catch (...) {
     slot.error = frame_error_from(std::current_exception());
   }
@@ -73,11 +80,11 @@ void FrameAssembler::announce(const v1::FramePlane& message) {
         "plane number " + std::to_string(message.plane()),
         "must be less than the session's " + std::to_string(progress_.size()) + " planes",
         "unknown");
-  const PlaneId id = config_.denoiser.planes[message.plane()];
+  const PlaneId id = config_->denoiser.planes[message.plane()];
   Progress& progress = progress_[message.plane()];
   if (progress.size != 0)
     throw InputError("plane " + plane_name(id), "must be announced once", "announced twice");
-  const auto size = plane_size(id, config_.denoiser.width, config_.denoiser.height);
+  const auto size = plane_size(id, config_->denoiser.width, config_->denoiser.height);
   const auto width = static_cast<std::uint64_t>(size.width);
   const auto height = static_cast<std::uint64_t>(size.height);
   if (message.width_px() != width || message.height_px() != height)
@@ -103,7 +110,7 @@ void FrameAssembler::write(const v1::PlaneChunk& chunk) {
         "must be less than the session's " + std::to_string(progress_.size()) + " planes",
         "unknown");
   Progress& progress = progress_[chunk.plane()];
-  const std::string name = "plane " + plane_name(config_.denoiser.planes[chunk.plane()]);
+  const std::string name = "plane " + plane_name(config_->denoiser.planes[chunk.plane()]);
   if (progress.complete)
     throw InputError("chunk of " + name, "must not follow the plane's last chunk",
                      "at offset " + std::to_string(chunk.offset()));
@@ -136,9 +143,10 @@ FrameSlot& FrameAssembler::end(const v1::FrameEnd& message) {
                          std::to_string(message.index()));
       for (std::size_t i = 0; i < progress_.size(); ++i)
         if (!progress_[i].complete)
-          throw InputError("plane " + plane_name(config_.denoiser.planes[i]) + " of frame " + frame,
-                           "must have " + bytes_text(progress_[i].size),
-                           "cut off after " + bytes_text(progress_[i].received));
+          throw InputError(
+              "plane " + plane_name(config_->denoiser.planes[i]) + " of frame " + frame,
+              "must have " + bytes_text(progress_[i].size),
+              "cut off after " + bytes_text(progress_[i].received));
     } catch (...) {
       slot_->error = frame_error_from(std::current_exception());
     }

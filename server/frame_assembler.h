@@ -15,7 +15,10 @@ namespace holdfast::server {
 /// declaration only, never by a size from the wire.
 class FrameAssembler {
  public:
-  explicit FrameAssembler(const SessionConfig& config) : config_(config) {}
+  explicit FrameAssembler(const SessionConfig& config) : config_(&config) {}
+
+  /// The configuration of the frames that begin from now on; outlives them.
+  void follow(const SessionConfig& config) { config_ = &config; }
 
   /// True between `begin` and `end` or `abandon`.
   bool open() const { return slot_ != nullptr; }
@@ -42,7 +45,7 @@ class FrameAssembler {
   void write(const v1::PlaneChunk& chunk);
   FrameSlot& close();
 
-  const SessionConfig& config_;
+  const SessionConfig* config_;
   FrameSlot* slot_ = nullptr;
   std::vector<Progress> progress_;  ///< by position in the session's planes
   wire::PlaneCoder coder_;

@@ -36,10 +36,11 @@ Scheduler::~Scheduler() {
   for (std::thread& thread : pool_) thread.join();
 }
 
-void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()> job) {
+void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()> job,
+                     std::optional<std::chrono::steady_clock::time_point> deadline) {
   {
     const std::lock_guard lock(mutex_);
-    strand->jobs_.push_back(std::move(job));
+    strand->jobs_.push_back({std::move(job), deadline});
     if (strand->ready_) return;
     strand->ready_ = true;
     strand->used_ = std::max(strand->used_, level_);
@@ -50,11 +51,20 @@ void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()
 
 /// Takes the strand whose turn it is out of the line; called with the mutex held.
 std::shared_ptr<Strand> Scheduler::next() {
-  const auto it = std::min_element(
-      line_.begin(), line_.end(), [](const auto& a, const auto& b) { return a->used_ < b->used_; });
+  auto it = std::min_element(line_.begin(), line_.end(),
+                             [](const auto& a, const auto& b) { return a->used_ < b->used_; });
+  level_ = std::max(level_, (*it)->used_);
+  const auto limit = (*it)->used_ + kDeadlineSlack;
+  constexpr auto kNever = std::chrono::steady_clock::time_point::max();
+  auto earliest = kNever;
+  for (auto other = line_.begin(); other != line_.end(); ++other) {
+    const auto due = (*other)->jobs_.front().deadline.value_or(kNever);
+    if ((*other)->used_ > limit || due >= earliest) continue;
+    earliest = due;
+    it = other;
+  }
   std::shared_ptr<Strand> strand = std::move(*it);
   line_.erase(it);
-  level_ = std::max(level_, strand->used_);
   return strand;
 }
 
@@ -64,7 +74,7 @@ void Scheduler::lead() {
     wake_.wait(lock, [this] { return stopping_ || !line_.empty(); });
     if (line_.empty()) return;
     const std::shared_ptr<Strand> strand = next();
-    std::function<void()> job = std::move(strand->jobs_.front());
+    std::function<void()> job = std::move(strand->jobs_.front().run);
     strand->jobs_.pop_front();
     lock.unlock();
     const auto start = clock_();

@@ -19,7 +19,11 @@ namespace holdfast::server {
 class Strand {
  private:
   friend class Scheduler;
-  std::deque<std::function<void()>> jobs_;
+  struct Job {
+    std::function<void()> run;
+    std::optional<std::chrono::steady_clock::time_point> deadline;
+  };
+  std::deque<Job> jobs_;
   bool ready_ = false;               ///< in the scheduler's line, or running
   std::chrono::nanoseconds used_{};  ///< time that its jobs have taken
 };
@@ -28,7 +32,9 @@ class Strand {
 /// lead, each one frame at a time, and the others join the parallel loops of whichever frame has
 /// work. The next frame is one of the strand whose jobs have taken the least time, so that sessions
 /// share the machine by time, whatever the length of their queues and the size of their frames;
-/// those that have taken the same take turns. A strand that had nothing to do saves up no time: it
+/// those that have taken the same take turns. Among strands that are within kDeadlineSlack of it,
+/// the one whose next job has the earliest deadline goes first: who has a deadline may borrow that
+/// much time, and no more, from who has none. A strand that had nothing to do saves up no time: it
 /// begins level with the strand whose turn it is.
 class Scheduler {
  public:
@@ -40,8 +46,11 @@ class Scheduler {
   ~Scheduler();
 
   /// Adds a job to the end of the strand. Never blocks on jobs; called from any thread. The job
-  /// must not throw.
-  void post(const std::shared_ptr<Strand>& strand, std::function<void()> job);
+  /// must not throw. `deadline`: by which it should begin.
+  void post(const std::shared_ptr<Strand>& strand, std::function<void()> job,
+            std::optional<std::chrono::steady_clock::time_point> deadline = {});
+
+  static constexpr std::chrono::milliseconds kDeadlineSlack{20};  ///< about a frame; ours
 
   int threads() const { return threads_; }
 

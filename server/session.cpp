@@ -1,26 +1,45 @@
 #include "server/session.h"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
+#include "server/error.h"
 
 namespace holdfast::server {
 
 Session::Session(std::string id, std::string token, SessionConfig config, int remembered)
     : id_(std::move(id)),
       token_(std::move(token)),
-      config_(std::move(config)),
-      denoiser_(config_.denoiser),
+      config_(std::make_shared<const SessionConfig>(std::move(config))),
+      denoiser_(config_->denoiser),
       denoiser_bytes_(denoiser_->memory_bytes()),
       plan_text_(denoiser_->plan_text()),
       ledger_(static_cast<std::size_t>(remembered)) {
-  if (!config_.preset_ms.empty()) chooser_.emplace(config_.preset_ms, config_.budget_ms);
+  if (!config_->preset_ms.empty()) chooser_.emplace(config_->preset_ms, config_->budget_ms);
+}
+
+void Session::follow(std::shared_ptr<const SessionConfig> config) {
+  if (!denoiser_) denoiser_.emplace(config_->denoiser);
+  try {
+    denoiser_.emplace(Denoiser(config->denoiser, *denoiser_));
+  } catch (const std::bad_alloc&) {
+    throw RefusedError("there is no memory for the session as it was to be", {"memory", {}});
+  }
+  std::string plan_text = denoiser_->plan_text();
+  chooser_.reset();
+  if (!config->preset_ms.empty()) chooser_.emplace(config->preset_ms, config->budget_ms);
+  const std::lock_guard lock(mutex_);
+  config_ = std::move(config);
+  denoiser_bytes_ = denoiser_->memory_bytes();
+  plan_text_ = std::move(plan_text);
 }
 
 std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch,
-                                              std::optional<TimePoint> complete) {
+                                              std::optional<TimePoint> complete,
+                                              std::shared_ptr<const SessionConfig> config) {
   const TimePoint start = std::chrono::steady_clock::now();
   // Taken for this frame only, also if it is refused: a bad transform must not spoil all that
   // follow.
@@ -33,9 +52,10 @@ std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch,
     if (epoch < epoch_)
       throw InputError("epoch of frame " + std::to_string(frame.index),
                        "must be at least " + std::to_string(epoch_), std::to_string(epoch));
+    if (config && config != config_) follow(std::move(config));
     if (epoch > epoch_ || !denoiser_) {
       denoiser_.reset();  // first, so that there are never two histories
-      denoiser_.emplace(config_.denoiser);
+      denoiser_.emplace(config_->denoiser);
       if (epoch > epoch_) next_reset_ = ResetReason::kEpoch;
       epoch_ = epoch;
     }
@@ -55,6 +75,9 @@ std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch,
     ++counters_.frames;
     return answer;
   } catch (const InputError&) {
+    count_error();
+    throw;
+  } catch (const RefusedError&) {
     count_error();
     throw;
   } catch (...) {
@@ -121,6 +144,21 @@ std::shared_ptr<const Answer> Session::repeat(std::int64_t index, std::uint64_t 
 void Session::count_error() {
   const std::lock_guard lock(mutex_);
   ++counters_.frame_errors;
+}
+
+std::shared_ptr<const SessionConfig> Session::config() const {
+  const std::lock_guard lock(mutex_);
+  return config_;
+}
+
+std::size_t Session::denoiser_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return denoiser_bytes_;
+}
+
+std::string Session::plan_text() const {
+  const std::lock_guard lock(mutex_);
+  return plan_text_;
 }
 
 SessionCounters Session::counters() const {

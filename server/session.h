@@ -13,19 +13,9 @@
 #include "server/answer.h"
 #include "server/preset_chooser.h"
 #include "server/scheduler.h"
+#include "server/session_config.h"
 
 namespace holdfast::server {
-
-/// What a client fixes when it makes a session.
-struct SessionConfig {
-  DenoiserConfig denoiser;
-  std::vector<PlaneId> results;   ///< result planes to send, in order
-  double budget_ms = 0;           ///< 0 = none
-  std::vector<double> preset_ms;  ///< with a budget: what a frame should take in each preset,
-                                  ///< fastest first, up to that of `denoiser`
-  std::string wire = "exact";
-  bool latest = false;  ///< a frame is dropped if a newer one waits behind it
-};
 
 /// What a session has done so far.
 struct SessionCounters {
@@ -47,15 +37,20 @@ class Session {
 
   const std::string& id() const { return id_; }
   const std::string& token() const { return token_; }
-  const SessionConfig& config() const { return config_; }
+  /// In force; `filter` may exchange it.
+  std::shared_ptr<const SessionConfig> config() const;
 
   /// Filters a frame; called from jobs of `strand()` only. A greater epoch than that of the frame
   /// before starts the history anew. Throws InputError for a frame that breaks a rule (history
   /// untouched); any other exception resets the history.
   /// What dropped frames left for it is added to the frame. With a budget, the preset is chosen;
   /// `complete`: when the frame had come whole, so that it is known how long others let it wait.
+  /// `config`: from this frame on, of the same lights and planes; null: as it is. It holds also if
+  /// the frame is refused. Where there is no memory for it, RefusedError is thrown, and the session
+  /// is as before.
   std::shared_ptr<const Answer> filter(Frame& frame, std::uint64_t epoch,
-                                       std::optional<TimePoint> complete = {});
+                                       std::optional<TimePoint> complete = {},
+                                       std::shared_ptr<const SessionConfig> config = {});
   /// Drops a frame: its cut and transforms are left for the next one. Null if the frame is not
   /// newer than the last, which `filter` then says. Called from jobs of `strand()` only.
   std::shared_ptr<const Answer> drop(const Frame& frame, std::uint64_t epoch);
@@ -68,10 +63,11 @@ class Session {
 
   const std::shared_ptr<Strand>& strand() const { return strand_; }
   /// History and scratch; see Denoiser::memory_bytes.
-  std::size_t denoiser_bytes() const { return denoiser_bytes_; }
-  const std::string& plan_text() const { return plan_text_; }
+  std::size_t denoiser_bytes() const;
+  std::string plan_text() const;
 
  private:
+  void follow(std::shared_ptr<const SessionConfig> config);
   void choose_preset();
   void note_cost(const FrameReport& report, std::optional<TimePoint> complete, TimePoint start);
 
@@ -84,9 +80,9 @@ class Session {
   };
 
   const std::string id_, token_;
-  const SessionConfig config_;
-  std::optional<Denoiser> denoiser_;  ///< always there but while it is made anew
-  std::size_t denoiser_bytes_;
+  std::shared_ptr<const SessionConfig> config_;  ///< exchanged under the mutex
+  std::optional<Denoiser> denoiser_;             ///< always there but while it is made anew
+  std::size_t denoiser_bytes_;                   ///< under the mutex, as the next
   std::string plan_text_;
   std::optional<PresetChooser> chooser_;  ///< with a budget
   TimePoint last_end_{};                  ///< when the last frame was filtered

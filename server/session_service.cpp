@@ -74,7 +74,7 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     SessionConfig asked = session_config_from(*request);
     if (asked.budget_ms > 0) asked.preset_ms = expected_ms(state_.costs.get(), asked.denoiser);
     const auto session = state_.sessions.create(std::move(asked), owner);
-    const SessionConfig& config = session->config();
+    const SessionConfig config = *session->config();
     response->set_session_id(session->id());
     response->set_token(session->token());
     response->set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));

@@ -24,14 +24,8 @@ SessionTable::SessionTable(SessionLimits limits, Clock clock)
 std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::string& owner) {
   const std::string id = random_hex(kIdBytes);
   expire();
-  const DenoiserConfig& core = config.denoiser;
-  if (std::max(core.width, core.height) > limits_.max_dimension)
-    throw InputError("size of a frame",
-                     "must be at most " + std::to_string(limits_.max_dimension) +
-                         " pixels on each side on this server",
-                     std::to_string(core.width) + "x" + std::to_string(core.height));
-  const std::size_t frames = frame_bytes(core, limits_.credits);
-  admit(id, frames + estimated_denoiser_bytes(core), owner);
+  const std::size_t frames = frame_bytes(config.denoiser, limits_.credits);
+  admit(id, needed_bytes(config.denoiser), owner);
   try {
     auto session =
         std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
@@ -80,7 +74,7 @@ void SessionTable::admit(const std::string& id, std::size_t bytes, const std::st
         {"max-sessions", limits_.linger});
   check_bytes(bytes, total_bytes_ + bytes);
   const TimePoint now = clock_();
-  entries_.emplace(id, Entry{nullptr, bytes, SessionLife(now), owner,
+  entries_.emplace(id, Entry{nullptr, bytes, 0, SessionLife(now), owner,
                              std::make_shared<SessionRates>(limits_, now),
                              std::make_shared<SessionWatch>(++made_)});
   total_bytes_ += bytes;
@@ -91,6 +85,49 @@ void SessionTable::settle(const std::string& id, std::size_t bytes) {
   Entry& entry = entries_.at(id);
   total_bytes_ += bytes - entry.bytes;
   entry.bytes = bytes;
+}
+
+/// Without making anything of that size.
+std::size_t SessionTable::needed_bytes(const DenoiserConfig& config) const {
+  if (std::max(config.width, config.height) > limits_.max_dimension)
+    throw InputError("size of a frame",
+                     "must be at most " + std::to_string(limits_.max_dimension) +
+                         " pixels on each side on this server",
+                     std::to_string(config.width) + "x" + std::to_string(config.height));
+  return frame_bytes(config, limits_.credits) + estimated_denoiser_bytes(config);
+}
+
+std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& session,
+                                            const SessionConfig& config) {
+  const std::size_t bytes = needed_bytes(config.denoiser);
+  {
+    const std::lock_guard lock(mutex_);
+    Entry& entry = live_entry(session->id());
+    check_bytes(bytes, total_bytes_ + bytes);
+    entry.bytes += bytes;
+    entry.reserved += bytes;
+    total_bytes_ += bytes;
+  }
+  return {session.get(), [this, session, bytes](void*) { end_reservation(*session, bytes); }};
+}
+
+void SessionTable::end_reservation(const Session& session, std::size_t bytes) {
+  const std::size_t has =
+      session.denoiser_bytes() + frame_bytes(session.config()->denoiser, limits_.credits);
+  const std::lock_guard lock(mutex_);
+  const auto it = entries_.find(session.id());
+  if (it == entries_.end() || it->second.session.get() != &session) return;
+  Entry& entry = it->second;
+  entry.reserved -= bytes;
+  total_bytes_ += has + entry.reserved - entry.bytes;
+  entry.bytes = has + entry.reserved;
+}
+
+SessionTable::Entry& SessionTable::live_entry(const std::string& id) {
+  const auto it = entries_.find(id);
+  if (it == entries_.end())
+    throw RefusedError(Refusal::kUnknownSession, "session " + id + " was deleted");
+  return it->second;
 }
 
 const SessionTable::Entry& SessionTable::checked(const std::string& id,

@@ -46,6 +46,13 @@ class SessionTable {
   /// Ends the hold; the session then lingers. No effect if the hold is void or the session removed.
   void detach(const Session& session, SessionLife::Hold hold);
 
+  /// Reserves the memory for a change of the session, which has both configurations at once while
+  /// it follows. Throws as `create`; what the session has is then as before. The memory is
+  /// accounted until the reservation dies, which corrects the account of the session to what it has
+  /// by then. The table must outlive it.
+  std::shared_ptr<void> reserve(const std::shared_ptr<Session>& session,
+                                const SessionConfig& config);
+
   /// Ends a session at once. Throws as `find`.
   void remove(const std::string& id, const std::string& token);
   /// Ends the sessions that have lingered too long; their number.
@@ -70,17 +77,21 @@ class SessionTable {
  private:
   struct Entry {
     std::shared_ptr<Session> session;  ///< null while it is being made
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;             ///< reservations included
+    std::size_t reserved = 0;          ///< for changes under way
     SessionLife life;
     std::string owner;  ///< a secret: compared, never shown
     std::shared_ptr<SessionRates> rates;
     std::shared_ptr<SessionWatch> watch;
   };
 
+  Entry& live_entry(const std::string& id);
   const Entry& checked(const std::string& id, const std::string& token) const;
   void admit(const std::string& id, std::size_t bytes, const std::string& owner);
   void check_owner(const std::string& owner) const;
   void settle(const std::string& id, std::size_t bytes);
+  void end_reservation(const Session& session, std::size_t bytes);
+  std::size_t needed_bytes(const DenoiserConfig& config) const;
   void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
 
   const SessionLimits limits_;

@@ -10,7 +10,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json session_json(const SessionTable::Listed& listed, std::chrono::steady_clock::time_point now) {
-  const SessionConfig& config = listed.session->config();
+  const SessionConfig config = *listed.session->config();
   const SessionWatch::Glance glance = listed.watch->glance(now);
   Json ms = Json::object();
   for (std::size_t stage = 0; stage < kWatchedStages.size(); ++stage)

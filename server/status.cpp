@@ -55,6 +55,9 @@ v1::FrameError frame_error_from(std::exception_ptr error) {
     out.set_code(v1::FRAME_ERROR_CODE_INVALID_FRAME);
     out.set_message(e.what());
     *out.mutable_violation() = violation_from(e);
+  } catch (const RefusedError& e) {
+    out.set_code(v1::FRAME_ERROR_CODE_REFUSED);
+    out.set_message(e.what());
   } catch (const std::exception& e) {
     out.set_code(v1::FRAME_ERROR_CODE_INTERNAL);
     out.set_message(std::string("the server failed, history was reset: ") + e.what());

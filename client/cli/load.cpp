@@ -35,6 +35,9 @@ double LoadResult::frames_per_second() const {
 void LoadResult::add(const LoadResult& other) {
   submitted += other.submitted;
   answered += other.answered;
+  dropped += other.dropped;
+  skipped += other.skipped;
+  late += other.late;
   clients += other.clients;
   reconnects += other.reconnects;
   elapsed_s = std::max(elapsed_s, other.elapsed_s);

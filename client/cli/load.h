@@ -35,6 +35,10 @@ struct LoadOptions {
   Link link;           ///< between each session and the server
   double churn_s = 0;  ///< each client leaves after that long and comes back anew; 0 = never
   std::string wire = "exact";
+  /// As a game: the server drops frames that newer ones have overtaken, and at a fixed rate a
+  /// session leaves out frames whose successor is due before there is a credit for them.
+  bool latest = false;
+  double deadline_ms = 0;  ///< of the begin of filtering; 0 = none
 };
 
 /// Where the time of the answered frames went, milliseconds, one value a frame.
@@ -50,9 +54,12 @@ struct LoadTimes {
 };
 
 struct LoadResult {
-  LoadOptions options;       ///< with the sizes that were used
-  std::int64_t clients = 0;  ///< sessions that were made
-  std::int64_t submitted = 0, answered = 0;
+  LoadOptions options;                       ///< with the sizes that were used
+  std::int64_t clients = 0;                  ///< sessions that were made
+  std::int64_t submitted = 0, answered = 0;  ///< answered: with planes
+  std::int64_t dropped = 0;                  ///< by the server, which said so
+  std::int64_t skipped = 0;                  ///< left out by the sessions themselves
+  std::int64_t late = 0;                     ///< of all that were sent, beyond their deadline
   std::int64_t reconnects = 0;
   double elapsed_s = 0;                       ///< from the first submit to the last answer
   std::uint64_t bytes_in = 0, bytes_out = 0;  ///< plane bytes to the server and back

@@ -93,6 +93,12 @@ void add_load(CLI::App& app) {
                   "many milliseconds")
       ->check(CLI::PositiveNumber)
       ->excludes(fps);
+  command.add_flag("--latest", options.latest,
+                   "as a game: frames that newer ones overtake are dropped");
+  command
+      .add_option("--deadline-ms", options.deadline_ms,
+                  "after its arrival by which a frame's filtering should begin")
+      ->check(CLI::PositiveNumber);
   command
       .add_option("--churn-s", options.churn_s,
                   "each client leaves after that many seconds and comes back with a new session")

@@ -24,6 +24,8 @@ client::SessionOptions session_options(const LoadOptions& options, const std::st
   out.preset = options.preset;
   use_access(options.access, out);
   out.wire = options.wire;
+  out.late_frames = options.latest ? client::LateFrames::kLatest : client::LateFrames::kAll;
+  out.frame_deadline_ms = options.deadline_ms;
   out.rewarm_frames = 0;  // frames are used again as soon as they are answered
   return out;
 }
@@ -96,7 +98,10 @@ void LoadSession::send(const Span& span) {
           options_.fps > 0 ? at(static_cast<double>(i) + span.phase) : now;
       if (due >= end) break;
       if (due > now) std::this_thread::sleep_until(due);
-      const std::shared_ptr<Frame>& frame = ring_[static_cast<std::size_t>(i) % ring_.size()];
+      if (overtaken(due, period)) continue;
+      const auto sent =
+          static_cast<std::size_t>(result_.submitted);  // written by this thread alone
+      const std::shared_ptr<Frame>& frame = ring_[sent % ring_.size()];
       frame->index = i;
       // The lock keeps an answer from coming before its client time is known.
       for (;;) {
@@ -117,12 +122,25 @@ void LoadSession::send(const Span& span) {
   session_.finish();
 }
 
+/// True, and counted, if the frame that was due then is left out: the next one is due as well.
+bool LoadSession::overtaken(Clock::time_point due, std::chrono::duration<double> period) {
+  if (!options_.latest || options_.fps <= 0 || Clock::now() < due + period) return false;
+  const std::lock_guard lock(mutex_);
+  ++result_.skipped;
+  return true;
+}
+
 void LoadSession::take(const client::FrameOutput& output) {
   const std::lock_guard lock(mutex_);
   const double client_ms = client_ms_.front();
   client_ms_.pop_front();
   if (output.error) {
     ++result_.errors[output.error->input ? "invalid_frame" : "server_failed"];
+    return;
+  }
+  if (output.deadline_passed) ++result_.late;
+  if (output.dropped) {
+    ++result_.dropped;
     return;
   }
   const client::FrameTiming& timing = output.timing;

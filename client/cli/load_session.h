@@ -51,6 +51,7 @@ class LoadSession {
   using Clock = std::chrono::steady_clock;
 
   void send(const Span& span);
+  bool overtaken(Clock::time_point due, std::chrono::duration<double> period);
   void take(const client::FrameOutput& output);
   void count_error(const char* kind);
 

@@ -51,6 +51,9 @@ nlohmann::ordered_json load_json(const LoadResult& result) {
           {"wire", options.wire},
           {"submitted", result.submitted},
           {"answered", result.answered},
+          {"dropped", result.dropped},
+          {"skipped", result.skipped},
+          {"late", result.late},
           {"frames_per_second", result.frames_per_second()},
           {"elapsed_s", result.elapsed_s},
           {"bytes_in", result.bytes_in},
@@ -78,6 +81,10 @@ std::string load_text(const LoadResult& result) {
                   result.frames_per_second(),
                   1e-6 * static_cast<double>(result.bytes_in) / std::max(result.elapsed_s, 1e-9),
                   1e-6 * static_cast<double>(result.bytes_out) / std::max(result.elapsed_s, 1e-9));
+  if (options.latest || options.deadline_ms > 0)
+    text += printed("dropped %lld, left out %lld, beyond their deadline %lld\n",
+                    static_cast<long long>(result.dropped), static_cast<long long>(result.skipped),
+                    static_cast<long long>(result.late));
   text += printed("%-10s %9s %9s %9s %9s\n", "ms", "p50", "p95", "p99", "max");
   for (const LoadPart& part : kLoadParts) {
     const std::vector<double>& values = result.times.*part.values;

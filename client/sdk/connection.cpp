@@ -7,7 +7,7 @@ Connection::Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Confi
     : exchange_(exchange),
       config_(std::move(config)),
       writer_{config_.wire, {}},
-      assembler_(config_.results, config_.width, config_.height) {
+      assembler_(config_.results) {
   const std::lock_guard lock(mutex_);  // reactions see a finished object, and wait for it here
   stub.async()->Denoise(&context_, this);
   *request_.mutable_hello() = hello;
@@ -84,7 +84,7 @@ void Connection::handle_response() {
       exchange_.opened(static_cast<int>(response_.welcome().credits()), config_.fresh);
       break;
     case Message::kFrameResult:
-      if (assembler_.begin(response_.frame_result(), exchange_.spare()))
+      if (assembler_.begin(response_.frame_result(), exchange_.answer_size(), exchange_.spare()))
         exchange_.answered(assembler_.take());
       break;
     case Message::kPlaneChunk:

@@ -31,7 +31,6 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   /// What the stream has to know about its session.
   struct Config {
     std::vector<PlaneId> planes, results;
-    int width = 0, height = 0;
     const wire::WireProfile* wire = &wire::exact_profile();
     bool fresh = false;  ///< the session was made for this stream
   };

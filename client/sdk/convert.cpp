@@ -80,6 +80,14 @@ void write_frame_begin(const OutgoingFrame& out, const std::vector<PlaneId>& pla
   camera.set_jitter_y_px(frame.camera.jitter_px.y);
   write_transforms(frame.objects, out.objects, *begin.mutable_objects());
   write_transforms(frame.lights, out.lights, *begin.mutable_lights());
+  begin.set_deadline_ms(out.deadline_ms);
+  if (out.change) {
+    v1::SessionChange& change = *begin.mutable_change();
+    change.set_width_px(static_cast<std::uint32_t>(out.change->width));
+    change.set_height_px(static_cast<std::uint32_t>(out.change->height));
+    change.set_recipe(out.change->recipe);
+    change.set_preset(out.change->preset);
+  }
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const Plane& plane = frame.planes.at(planes[i]);
     v1::FramePlane& announced = *begin.add_planes();
@@ -95,7 +103,9 @@ void write_frame_begin(const OutgoingFrame& out, const std::vector<PlaneId>& pla
 void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
   output.index = result.index();
   if (result.has_error()) {
-    output.error = FrameFailure{result.error().message(), {}};
+    output.error.emplace();
+    output.error->message = result.error().message();
+    output.error->refused = result.error().code() == v1::FRAME_ERROR_CODE_REFUSED;
     const v1::InputViolation& violation = result.error().violation();
     if (result.error().code() == v1::FRAME_ERROR_CODE_INVALID_FRAME)
       output.error->input.emplace(violation.subject(), violation.rule(), violation.value());
@@ -114,6 +124,7 @@ void read_frame_result(const v1::FrameResult& result, FrameOutput& output) {
   output.non_finite_out = result.non_finite_out();
   output.repeated = result.repeated();
   output.dropped = result.dropped();
+  output.deadline_passed = result.deadline_passed();
 }
 
 void check_planes(const Frame& frame, const std::vector<PlaneId>& planes, int width, int height) {

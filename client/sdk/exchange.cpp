@@ -17,14 +17,14 @@ void update(TransformTable& table, const TransformTable& newer) {
 // --- the user's side -----------------------------------------------------------------------------
 
 bool Exchange::submit(std::shared_ptr<const Frame> frame, bool wait) {
-  check_planes(*frame, config_.planes, config_.width, config_.height);
   std::unique_lock lock(mutex_);
+  check_planes(*frame, config_.planes, size_.width, size_.height);
   const auto may = [this] { return closed_ || static_cast<int>(pending_.size()) < credits_; };
   if (!wait && !may()) return false;
   changed_.wait(lock, may);
   if (finishing_) throw std::logic_error("submit after finish");
   if (closed_) std::rethrow_exception(error_);
-  pending_.push_back({std::move(frame), epoch_, Clock::now()});
+  pending_.push_back({std::move(frame), epoch_, Clock::now(), change_});
   ++unsent_;
   return true;
 }
@@ -51,6 +51,27 @@ void Exchange::finish() {
 void Exchange::restart() {
   const std::lock_guard lock(mutex_);
   ++epoch_;
+}
+
+void Exchange::change(const SessionChange& change) {
+  for (const int size : {change.width, change.height})
+    if (size < 0 || size > kMaxDimension)
+      throw InputError("size", "must be in 1.." + std::to_string(kMaxDimension) + ", or 0",
+                       std::to_string(size));
+  const std::lock_guard lock(mutex_);
+  SessionChange whole = change_ ? *change_ : SessionChange{};
+  if (change.width != 0) size_.width = change.width;
+  if (change.height != 0) size_.height = change.height;
+  if (!change.recipe.empty()) whole.recipe = change.recipe;
+  if (!change.preset.empty()) whole.preset = change.preset;
+  whole.width = size_.width;
+  whole.height = size_.height;
+  change_ = std::make_shared<const SessionChange>(std::move(whole));
+}
+
+PlaneSize Exchange::size_of(const Pending& pending) const {
+  if (pending.change) return {pending.change->width, pending.change->height};
+  return {config_.width, config_.height};
 }
 
 void Exchange::recycle(PlaneSet&& planes) {
@@ -100,15 +121,19 @@ std::optional<OutgoingFrame> Exchange::next() {
   if (static_cast<int>(sent_.size()) >= credits_) return {};
   OutgoingFrame out;
   if (!warming_.empty()) {
-    out.frame = std::move(warming_.front());
-    out.epoch = recent_epoch_;
+    const Pending& warming = warming_.front();
+    out.frame = warming.frame;
+    out.epoch = warming.epoch;
+    out.change = warming.change;
+    sent_.push_back({out.frame->index, size_of(warming), true});
     warming_.pop_front();
-    sent_.push_back({out.frame->index, true});
   } else if (unsent_ > 0) {
     const Pending& pending = pending_[pending_.size() - unsent_--];
     out.frame = pending.frame;
     out.epoch = pending.epoch;
-    sent_.push_back({out.frame->index, false});
+    out.change = pending.change;
+    out.deadline_ms = config_.deadline_ms;
+    sent_.push_back({out.frame->index, size_of(pending), false});
   } else {
     return {};
   }
@@ -154,13 +179,13 @@ void Exchange::remember(const Pending& pending) {
   }
   if (pending.frame->cut)  // what was before warms nothing
     while (!recent_.empty()) forget_oldest();
-  recent_.push_back(pending.frame);
+  recent_.push_back(pending);
   while (recent_.size() > static_cast<std::size_t>(config_.rewarm_frames)) forget_oldest();
 }
 
 void Exchange::forget_oldest() {
-  update(old_objects_, recent_.front()->objects);
-  update(old_lights_, recent_.front()->lights);
+  update(old_objects_, recent_.front().frame->objects);
+  update(old_lights_, recent_.front().frame->lights);
   recent_.pop_front();
 }
 
@@ -170,6 +195,12 @@ PlaneSet Exchange::spare() {
   PlaneSet planes = std::move(spare_.back());
   spare_.pop_back();
   return planes;
+}
+
+PlaneSize Exchange::answer_size() const {
+  const std::lock_guard lock(mutex_);
+  if (sent_.empty()) throw std::runtime_error("an answer came to no frame");
+  return sent_.front().size;
 }
 
 void Exchange::count(std::uint64_t sent, std::uint64_t received) {

@@ -11,7 +11,7 @@ void require(bool condition, const char* rule) {
 
 }  // namespace
 
-bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
+bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSize of, PlaneSet&& reuse) {
   require(!output_, "an answer began inside another");
   output_.emplace();
   read_frame_result(result, *output_);
@@ -30,7 +30,7 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSet&& reuse) {
     const auto codec = wire::codec_from_number(announced.codec());
     require(format && codec, "a result plane must have a known codec and a format that suits it");
     codings_.push_back({*format, *codec});
-    const PlaneSize size = plane_size(id, width_, height_);
+    const PlaneSize size = plane_size(id, of.width, of.height);
     output_->planes.add(id, size.width, size.height);
   }
   return results_.empty();

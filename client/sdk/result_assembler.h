@@ -5,21 +5,21 @@
 
 #include <holdfast/client.h>
 
+#include "core/frame/plane_size.h"
 #include "holdfast/v1/denoise_service.pb.h"
 #include "proto/plane_coder.h"
 
 namespace holdfast::client {
 
 /// Puts an answer together from its messages. Throws std::runtime_error if the server breaks the
-/// protocol; sizes follow from the session, never from the wire.
+/// protocol; sizes follow from the frames, never from the wire.
 class ResultAssembler {
  public:
-  ResultAssembler(std::vector<PlaneId> results, int width, int height)
-      : results_(std::move(results)), width_(width), height_(height) {}
+  explicit ResultAssembler(std::vector<PlaneId> results) : results_(std::move(results)) {}
 
-  /// Starts an answer with FrameResult. `reuse`: planes whose memory it may take. True if the
-  /// answer is complete.
-  bool begin(const v1::FrameResult& result, PlaneSet&& reuse);
+  /// Starts an answer with FrameResult. `size`: of its frame; `reuse`: planes whose memory it may
+  /// take. True if the answer is complete.
+  bool begin(const v1::FrameResult& result, PlaneSize size, PlaneSet&& reuse);
   /// Adds a piece; true if the answer is complete.
   bool add(const v1::PlaneChunk& chunk);
   /// The complete answer.
@@ -27,7 +27,6 @@ class ResultAssembler {
 
  private:
   const std::vector<PlaneId> results_;
-  const int width_, height_;
   wire::PlaneCoder coder_;
   std::vector<wire::PlaneCoding> codings_;  ///< of results_
   std::optional<FrameOutput> output_;

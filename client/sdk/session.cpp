@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <holdfast/client.h>
 
 #include "client/sdk/exchange.h"
@@ -9,7 +11,11 @@ namespace {
 Exchange::Config exchange_config(const SessionOptions& options) {
   if (options.rewarm_frames < 0)
     throw InputError("rewarm_frames", "must be at least 0", std::to_string(options.rewarm_frames));
-  return {options.planes, options.width, options.height, options.rewarm_frames};
+  if (!(options.frame_deadline_ms >= 0) || !std::isfinite(options.frame_deadline_ms))
+    throw InputError("frame_deadline_ms", "must be finite and at least 0",
+                     std::to_string(options.frame_deadline_ms));
+  return {options.planes, options.width, options.height, options.rewarm_frames,
+          options.frame_deadline_ms};
 }
 
 }  // namespace
@@ -53,6 +59,7 @@ bool Session::try_submit(std::shared_ptr<const Frame> frame) {
 std::optional<FrameOutput> Session::receive() { return impl_->exchange.receive(true); }
 std::optional<FrameOutput> Session::try_receive() { return impl_->exchange.receive(false); }
 void Session::restart() { impl_->exchange.restart(); }
+void Session::change(const SessionChange& change) { impl_->exchange.change(change); }
 void Session::finish() { impl_->finish(); }
 void Session::close() { impl_->close(); }
 void Session::recycle(PlaneSet&& planes) { impl_->exchange.recycle(std::move(planes)); }

@@ -99,9 +99,7 @@ grpc::Status SessionKeeper::open(bool fresh, milliseconds timeout) {
     hello.set_last_acked_frame(*last);
   }
   auto connection = std::make_unique<Connection>(
-      denoise_, exchange_,
-      Connection::Config{options_.planes, results_, options_.width, options_.height, &wire_, fresh},
-      hello);
+      denoise_, exchange_, Connection::Config{options_.planes, results_, &wire_, fresh}, hello);
   const grpc::Status status = connection->wait_open(timeout);
   if (!status.ok()) return status;
   const std::lock_guard lock(mutex_);

@@ -14,6 +14,7 @@
 #include "core/denoiser/plan.h"
 #include "core/denoiser/stage_timer.h"
 #include "core/denoiser/switch_plan.h"
+#include "core/denoiser/take_over.h"
 #include "core/frame/error.h"
 #include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
@@ -67,6 +68,18 @@ class Denoiser::Impl {
                            entry.half ? half_size(c.height) : c.height);
       signals.push_back(component_plane(entry.component));
     }
+  }
+
+  void go_on_from(const Impl& before) {
+    scene = before.scene;
+    scene.resize(config.width, config.height);
+    last_index = before.last_index;
+    has_past = before.has_past && plan.history && before.plan.history && !oracle && !before.oracle;
+    if (!has_past) return;
+    guides[now].view = scene.view();
+    guides[now].rays = guides[now].view.rays.cast<float>();
+    take_over({before.plan, before.guides[before.now], before.half, before.filters},
+              {plan, guides[now], half, filters});
   }
 
   FrameReport filter(const Frame& frame, PlaneSet& results) {
@@ -268,6 +281,10 @@ class Denoiser::Impl {
 };
 
 Denoiser::Denoiser(const DenoiserConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Denoiser::Denoiser(const DenoiserConfig& config, const Denoiser& before) : Denoiser(config) {
+  check_same_scene(config, before.config());
+  impl_->go_on_from(*before.impl_);
+}
 Denoiser::~Denoiser() = default;
 Denoiser::Denoiser(Denoiser&&) noexcept = default;
 Denoiser& Denoiser::operator=(Denoiser&&) noexcept = default;

@@ -76,6 +76,12 @@ class Denoiser {
  public:
   /// Throws InputError naming what is wrong with `config`.
   explicit Denoiser(const DenoiserConfig& config);
+  /// Goes on where `before` is, with another size, recipe, preset or any other choice, but the same
+  /// lights and planes: indices, transforms and history come along, resampled where the size
+  /// differs (core/denoiser/take_over.h). History starts anew from or to preset `reference`, and
+  /// where either recipe keeps none. `before` is as it was; its preset that was to follow is not
+  /// taken. Throws InputError naming what is wrong with `config`.
+  Denoiser(const DenoiserConfig& config, const Denoiser& before);
   ~Denoiser();
   Denoiser(Denoiser&&) noexcept;
   Denoiser& operator=(Denoiser&&) noexcept;

@@ -92,6 +92,10 @@ void SceneMotion::follow_halved(const SceneMotion& full) {
   }
 }
 
+void SceneMotion::resize(int width, int height) {
+  if (has_past_) view_ = ViewGeometry({view_matrix_, clip_matrix_, {}}, width, height);
+}
+
 void SceneMotion::reset() { *this = SceneMotion(); }
 
 bool SceneMotion::at_rest() const {

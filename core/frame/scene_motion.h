@@ -37,6 +37,9 @@ class SceneMotion {
   /// to be advanced.
   void follow_halved(const SceneMotion& full);
 
+  /// The last frame counts as one of that size, by the same camera.
+  void resize(int width, int height);
+
   static constexpr std::size_t kMostObjects = std::size_t{1} << 16;
   std::size_t remembered_objects() const { return object_tracks_.size(); }
 

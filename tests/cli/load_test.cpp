@@ -58,6 +58,17 @@ TEST_F(Load, AddsALinkBetweenClientsAndServer) {
   EXPECT_GE(slow["ms"]["transport"]["p50"], plain["ms"]["transport"]["p50"].get<double>() + 50);
 }
 
+// Of twice the frames that one thread can filter, those that are sent are answered in time, and
+// each of the others is counted by name.
+TEST_F(Load, LeavesOutWhatAGameWouldWhenTheServerDoesNotKeepUp) {
+  const auto json = load({"--fps", "400", "--latest", "--deadline-ms", "50"}, "240x180");
+  const auto count = [&](const char* name) { return json[name].get<int>(); };
+  EXPECT_EQ(count("submitted") + count("skipped"), 200);
+  EXPECT_EQ(count("answered") + count("dropped"), count("submitted"));
+  EXPECT_GT(count("skipped") + count("dropped"), 0);
+  EXPECT_TRUE(json["errors"].empty());
+}
+
 TEST_F(Load, LetsClientsComeAndGo) {
   const auto json = load({"--fps", "20", "--sessions", "2", "--churn-s", "0.15"});
   EXPECT_GE(json["clients"], 6) << "each came back after 0.15 s of 0.5";

@@ -99,7 +99,8 @@ TEST(StageOracle, ConesAgreeOnEveryInstructionSet) {
         const Session session(width, height, samples);
         const std::vector<Image> expected = by_oracle(session, basis);
         test::on_every_isa_and_threads([&] {
-          ConeHistory cones(width, height, basis);
+          ConeHistory cones(width, height, basis, HistoryFormat::kFloat);
+          ConeRoom room(width, height, basis, HistoryFormat::kFloat);
           WindowScratch window(width, height);
           const SceneMotion scene;
           std::size_t k = 0;
@@ -110,8 +111,8 @@ TEST(StageOracle, ConesAgreeOnEveryInstructionSet) {
             for (std::size_t j = 0; j < radiance.size(); ++j)
               given.push_back({&session.sent[t][j].directions, &radiance[j]});
             cones.correct({session.guides[t], session.guides[t > 0 ? t - 1 : 0], scene},
-                          t > 0 ? &session.surface[t] : nullptr, nullptr, given, ConeRule{},
-                          window);
+                          t > 0 ? &session.surface[t] : nullptr, nullptr, given, ConeRule{}, 0,
+                          room, window);
             for (const Channels<float>& each : radiance)
               test::expect_close(each, 0, expected[k++], kCorrected, kTips, "radiance");
           }

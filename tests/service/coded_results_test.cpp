@@ -36,8 +36,8 @@ class CodedResults : public ::testing::TestWithParam<const char*> {
   v1::PlaneChunk& chunk(std::size_t plane) { return *messages[plane + 1].mutable_plane_chunk(); }
 
   FrameOutput assemble() {
-    ResultAssembler assembler(config.results, kWidth, kHeight);
-    bool whole = assembler.begin(messages[0].frame_result(), {});
+    ResultAssembler assembler(config.results);
+    bool whole = assembler.begin(messages[0].frame_result(), {kWidth, kHeight}, {});
     for (std::size_t i = 1; i < messages.size(); ++i)
       whole = assembler.add(messages[i].plane_chunk());
     EXPECT_TRUE(whole);

@@ -1,9 +1,7 @@
 // What goes wrong between a client and a server, one test for each, named by the failure.
 #include <thread>
 
-#include "tests/service/raw_client.h"
-#include "tests/service/served.h"
-#include "tests/service/server_process.h"
+#include "tests/service/fault_fixture.h"
 
 const char* const holdfast::test::kServerProgram = HOLDFAST_SERVER;
 
@@ -11,55 +9,15 @@ namespace holdfast {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-using client::Session;
-using client::SessionOptions;
+using test::Clock;
+using test::Fault;
+using test::kSlowness;
 using test::RawClient;
 using test::RawStream;
+using test::seconds_since;
 using test::ServerProcess;
-
-// How much slower sanitizers may make what a test times.
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-constexpr double kSlowness = 10;
-#else
-constexpr double kSlowness = 1;
-#endif
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-class Fault : public ::testing::Test {
- protected:
-  SessionOptions options() const {
-    SessionOptions out;
-    out.address = socket.address();
-    out.width = config.width;
-    out.height = config.height;
-    out.lights = config.lights;
-    out.planes = config.planes;
-    return out;
-  }
-  /// A session on a server that may just have been started.
-  Session connect() const {
-    for (const auto start = Clock::now();;) try {
-        return Session(options());
-      } catch (const client::ConnectionError&) {
-        if (seconds_since(start) > 20) throw;
-        std::this_thread::sleep_for(20ms);
-      }
-  }
-  void pass(Session& session, int index) const {
-    session.submit(test::small_frame(config, index));
-    const auto output = session.receive();
-    ASSERT_TRUE(output);
-    EXPECT_FALSE(output->error) << output->error->message;
-    EXPECT_EQ(output->index, index);
-  }
-
-  test::SocketAddress socket;
-  DenoiserConfig config = test::small_config();
-};
+using test::Session;
+using test::tell_fault;
 
 TEST_F(Fault, ServerKilledAndStartedAgainIsContinuedWarmWithinASecond) {
   auto server = std::make_unique<ServerProcess>(socket.address());
@@ -78,10 +36,12 @@ TEST_F(Fault, ServerKilledAndStartedAgainIsContinuedWarmWithinASecond) {
     session.submit(test::small_frame(config, 6));
     output = session.receive();
   }
-  EXPECT_LT(seconds_since(start), 1.0 * kSlowness);
+  const double recovery = seconds_since(start);
+  EXPECT_LT(recovery, 1.0 * kSlowness);
   EXPECT_TRUE(output->history_lost);
   EXPECT_FALSE(output->history_reset) << "it was warmed";
   session.close();
+  tell_fault("the next frame, history_lost", recovery, 0);
 }
 
 TEST_F(Fault, ClientKilledInTheMiddleOfAFrameLeavesItsSessionAndOthersAlone) {
@@ -105,6 +65,7 @@ TEST_F(Fault, ClientKilledInTheMiddleOfAFrameLeavesItsSessionAndOthersAlone) {
   EXPECT_EQ(again.attach().last_frame_index(), 0) << "the half frame is not in the history";
   again.write(test::small_frame(config, 1), config);
   EXPECT_FALSE(again.read_result().history_reset());
+  tell_fault("others: nothing; itself: resumed where it was", -1, 0);
 }
 
 TEST_F(Fault, SilentClientLosesItsSessionToItsOwnNewStream) {
@@ -119,9 +80,11 @@ TEST_F(Fault, SilentClientLosesItsSessionToItsOwnNewStream) {
   RawStream again(client);
   const auto start = Clock::now();
   EXPECT_TRUE(again.attach().resumed());
-  EXPECT_LT(seconds_since(start), 1.0 * kSlowness);
+  const double recovery = seconds_since(start);
+  EXPECT_LT(recovery, 1.0 * kSlowness);
   again.write(test::small_frame(config, 1), config);
   EXPECT_FALSE(again.read_result().history_reset());
+  tell_fault("resumed by a new stream at once", recovery, 0);
 }
 
 TEST_F(Fault, FrozenServerIsWaitedForAndNothingIsLost) {
@@ -132,8 +95,10 @@ TEST_F(Fault, FrozenServerIsWaitedForAndNothingIsLost) {
   session.submit(test::small_frame(config, 1));
   std::this_thread::sleep_for(200ms);
   EXPECT_FALSE(session.try_receive());
+  const auto start = Clock::now();
   server.signal(SIGCONT);
   EXPECT_EQ(session.receive()->index, 1);
+  tell_fault("a late answer", seconds_since(start), 0);
 }
 
 TEST_F(Fault, SlowReaderStallsNobodyElse) {
@@ -152,6 +117,7 @@ TEST_F(Fault, SlowReaderStallsNobodyElse) {
   for (int i = 0; i < 4; ++i) pass(quick, i);
   slow.cancel();
   writer.join();
+  tell_fault("others: nothing", -1, 0);
 }
 
 TEST_F(Fault, ClientFrozenInTheMiddleOfAFrameHoldsUpNeitherOthersNorTheEnd) {
@@ -168,7 +134,8 @@ TEST_F(Fault, ClientFrozenInTheMiddleOfAFrameHoldsUpNeitherOthersNorTheEnd) {
   const auto start = Clock::now();
   server.signal(SIGTERM);
   EXPECT_EQ(server.wait(), 0);
-  EXPECT_LT(seconds_since(start), 3.0) << "the deadline cuts it off";
+  EXPECT_LT(seconds_since(start), 3.0 * kSlowness) << "the deadline cuts it off";
+  tell_fault("others: nothing", -1, 0);
 }
 
 TEST_F(Fault, CorruptAndWrongLengthChunksFailTheirFrameAlone) {
@@ -196,6 +163,7 @@ TEST_F(Fault, CorruptAndWrongLengthChunksFailTheirFrameAlone) {
   EXPECT_NE(error_of(1, [](v1::PlaneChunk& c) { c.set_plane(99); }).find("plane number"),
             std::string::npos);
   EXPECT_EQ(error_of(1, nothing), "");
+  tell_fault("the error of that frame, by name", -1, 0);
 }
 
 TEST_F(Fault, OversizedMessageEndsTheStreamAndTheSessionStays) {
@@ -217,6 +185,7 @@ TEST_F(Fault, OversizedMessageEndsTheStreamAndTheSessionStays) {
   again.attach();
   again.write(test::small_frame(config, 0), config);
   EXPECT_FALSE(again.read_result().has_error());
+  tell_fault("the end of the stream; resumed", -1, 0);
 }
 
 TEST_F(Fault, StopSignalUnderLoadLosesNoFrameAndEndsWell) {
@@ -239,6 +208,7 @@ TEST_F(Fault, StopSignalUnderLoadLosesNoFrameAndEndsWell) {
   load.join();
   ASSERT_EQ(answered.size(), static_cast<std::size_t>(kFrames));
   for (int i = 0; i < kFrames; ++i) EXPECT_EQ(answered[static_cast<std::size_t>(i)], i);
+  tell_fault("Draining, then the next server", -1, kFrames - static_cast<int>(answered.size()));
 }
 
 TEST_F(Fault, PortInUseIsNamedAndEndsTheProgram) {
@@ -247,6 +217,7 @@ TEST_F(Fault, PortInUseIsNamedAndEndsTheProgram) {
   ServerProcess second(socket.address());
   EXPECT_EQ(second.wait(), 2);
   EXPECT_NO_THROW(connect().close());
+  tell_fault("others: nothing; exit code 2 of the second", -1, 0);
 }
 
 TEST_F(Fault, SessionLimitRefusesTheNextOneOnly) {
@@ -254,6 +225,7 @@ TEST_F(Fault, SessionLimitRefusesTheNextOneOnly) {
   Session first = connect();
   EXPECT_THROW(Session second(options()), client::RefusedError);
   pass(first, 0);
+  tell_fault("RESOURCE_EXHAUSTED, by name", -1, 0);
 }
 
 }  // namespace

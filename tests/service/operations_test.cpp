@@ -10,6 +10,8 @@
 #include "tests/service/served.h"
 #include "tests/service/server_process.h"
 
+const char* const holdfast::test::kServerProgram = HOLDFAST_SERVER;
+
 namespace holdfast {
 namespace {
 

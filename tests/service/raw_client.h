@@ -22,7 +22,8 @@ class RawClient {
         sessions(v1::SessionService::NewStub(channel)),
         denoise(v1::DenoiseService::NewStub(channel)) {}
 
-  grpc::Status create(const DenoiserConfig& config) {
+  grpc::Status create(const DenoiserConfig& config,
+                      v1::LateFrames late_frames = v1::LATE_FRAMES_ALL) {
     client::SessionOptions options;
     options.width = config.width;
     options.height = config.height;
@@ -30,6 +31,7 @@ class RawClient {
     options.planes = config.planes;
     v1::CreateSessionRequest request;
     client::write_create_request(options, request);
+    request.set_late_frames(late_frames);
     grpc::ClientContext context;
     return sessions->CreateSession(&context, request, &session);
   }

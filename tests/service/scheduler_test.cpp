@@ -92,6 +92,43 @@ TEST(Scheduler, LetsStrandsTakeTurnsWhateverTheLengthOfTheirQueues) {
   EXPECT_EQ(std::string(order.begin(), order.end()), "mgmgmgggggggg");
 }
 
+TEST(Scheduler, TakesTheEarliestDeadlineFirstAmongThoseThatHaveUsedAboutTheSame) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    const std::chrono::steady_clock::time_point start{};
+    scheduler.post(std::make_shared<Strand>(), [&] { order += 'n'; });
+    scheduler.post(
+        std::make_shared<Strand>(), [&] { order += 'l'; }, start + 90ms);
+    scheduler.post(
+        std::make_shared<Strand>(), [&] { order += 'e'; }, start + 30ms);
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "eln");
+}
+
+TEST(Scheduler, LendsNoMoreThanTheSlackToWhoHasDeadlines) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    const auto hasty = std::make_shared<Strand>(), patient = std::make_shared<Strand>();
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    const std::chrono::steady_clock::time_point long_past{};
+    for (int i = 0; i < 8; ++i)
+      scheduler.post(
+          hasty, [&] { order += 'h', clock.pass(10ms); }, long_past);
+    for (int i = 0; i < 4; ++i) scheduler.post(patient, [&] { order += 'p', clock.pass(10ms); });
+    posted.count_down();
+  }
+  // Never more than 20 ms and the frame at hand ahead.
+  EXPECT_EQ(order, "hhhphphphphh");
+}
+
 TEST(Scheduler, UsesNoMoreThreadsThanItWasGiven) {
   for (const int threads : {1, 2}) {
     std::atomic<int> now{0}, most{0};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -14,16 +15,28 @@ namespace holdfast::test {
 
 extern const char* const kServerProgram;  ///< path of holdfast-server
 
+/// What a server of a test finds around it.
+struct Surroundings {
+  std::string log_level = "off";
+  std::string log_file;  ///< takes stderr; empty = that of the test
+  std::vector<std::pair<std::string, std::string>> variables;  ///< of the environment
+};
+
 /// holdfast-server as a process of its own, which a test may kill.
 class ServerProcess {
  public:
-  explicit ServerProcess(const std::string& listen, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {kServerProgram, "--listen", listen, "--log-level", "off"});
+  explicit ServerProcess(const std::string& listen, std::vector<std::string> more = {},
+                         const Surroundings& around = {}) {
+    more.insert(more.begin(),
+                {kServerProgram, "--listen", listen, "--log-level", around.log_level});
     std::vector<char*> arguments;
     for (std::string& argument : more) arguments.push_back(argument.data());
     arguments.push_back(nullptr);
     pid_ = fork();
     if (pid_ == 0) {
+      for (const auto& [name, value] : around.variables) setenv(name.c_str(), value.c_str(), 1);
+      const int log = around.log_file.empty() ? -1 : open(around.log_file.c_str(), O_WRONLY);
+      if (log >= 0) dup2(log, STDERR_FILENO);
       execv(arguments[0], arguments.data());
       _exit(127);
     }

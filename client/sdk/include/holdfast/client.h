@@ -71,6 +71,17 @@ struct SessionOptions {
   std::string wire = "exact";    ///< name of the wire profile
   std::vector<PlaneId> results;  ///< result planes to send back; empty = all
   LateFrames late_frames = LateFrames::kAll;
+  /// Filtering of a frame should begin that long after it has begun to arrive, milliseconds; one
+  /// that is later is marked, and dropped under LateFrames::kLatest. 0 = no deadline.
+  double frame_deadline_ms = 0;
+};
+
+/// Another size, recipe or preset in mid-session; 0 and empty = as before. History comes along.
+struct SessionChange {
+  int width = 0;   ///< pixels, 1..kMaxDimension
+  int height = 0;  ///< pixels, 1..kMaxDimension
+  std::string recipe;
+  std::string preset;
 };
 
 /// Where the time of a frame went, milliseconds. All but `total` by the server's clock.
@@ -90,6 +101,8 @@ struct FrameTiming {
 struct FrameFailure {
   std::string message;
   std::optional<InputError> input;  ///< the rule that the frame broke; nothing if the server failed
+  bool refused =
+      false;  ///< it came under a change (Session::change) that the server has no room for
 };
 
 /// The answer to one frame.
@@ -110,6 +123,7 @@ struct FrameOutput {
   bool history_lost = false;  ///< the server was lost: history was made anew from the last frames
   bool dropped = false;       ///< by LateFrames::kLatest; then `planes` is empty
   bool repeated = false;      ///< the frame was sent again, and its answer was still known
+  bool deadline_passed = false;  ///< before it could be filtered; see SessionOptions
 };
 
 /// Plane bytes that crossed the wire.
@@ -154,6 +168,12 @@ class Session {
   /// The frames that follow belong together: history starts anew and indices may start again.
   void restart();
 
+  /// Frames submitted from now on are of that size, and are filtered by that recipe and preset.
+  /// What is in flight is not affected. A server that refuses says so with each frame that comes
+  /// under the change (FrameOutput::error); nothing is lost, and another `change` may take it back.
+  /// Throws InputError for a size out of range.
+  void change(const SessionChange& change);
+
   /// No more frames will be submitted.
   void finish();
   /// Ends the session in order: finishes, waits for what is in flight, deletes it on the server.
@@ -168,7 +188,7 @@ class Session {
   int in_flight() const;
   /// How often a lost connection was opened again.
   int reconnects() const;
-  /// Result planes of each frame, in order.
+  /// Result planes of each frame, in order. These and the next two are as the session was made.
   const std::vector<PlaneId>& results() const;
   const std::string& recipe() const;
   const std::string& preset() const;

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <holdfast/client.h>
+
+#include "tests/service/fault_table.h"
+#include "tests/service/raw_client.h"
+#include "tests/service/server_process.h"
+
+namespace holdfast::test {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using client::Session;
+using client::SessionOptions;
+
+// How much slower sanitizers may make what a test times, and a machine that others use as well.
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+inline constexpr double kSlowness = 20;
+#else
+inline constexpr double kSlowness = 3;
+#endif
+
+inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// A server of its own process at a unix socket, and clients of it.
+class Fault : public ::testing::Test {
+ protected:
+  SessionOptions options() const {
+    SessionOptions out;
+    out.address = socket.address();
+    out.width = config.width;
+    out.height = config.height;
+    out.lights = config.lights;
+    out.planes = config.planes;
+    return out;
+  }
+  /// A session on a server that may just have been started.
+  Session connect() const {
+    for (const auto start = Clock::now();;) try {
+        return Session(options());
+      } catch (const client::ConnectionError&) {
+        if (seconds_since(start) > 20) throw;
+        std::this_thread::sleep_for(20ms);
+      }
+  }
+  void pass(Session& session, int index) const {
+    session.submit(small_frame(config, index));
+    const auto output = session.receive();
+    ASSERT_TRUE(output);
+    EXPECT_FALSE(output->error) << output->error->message;
+    EXPECT_EQ(output->index, index);
+  }
+
+  SocketAddress socket;
+  DenoiserConfig config = small_config();
+};
+
+}  // namespace holdfast::test
