@@ -176,6 +176,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     input.timer.end("vectors", vectors_traffic());
   }
   blend(input, follows, scratch);
+  HistoryRoom& histories = room(scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
   HistoryRoom& histories = room(scratch);
@@ -189,6 +190,8 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
   count_history(input.frames.now, histories.now);
   keep(input, histories);
+  if (kept_.format() == HistoryFormat::kPacked)
+    input.timer.end("keep", packing_traffic(histories.now.data.count()));
 }
 
 void ComponentFilter::correct_by_cones(const ComponentInput& input, Scratch& s) {
@@ -292,6 +295,8 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
     sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
   HistoryRoom& histories = room(s);
   kept_.recall(histories.before.data);
+  if (kept_.format() == HistoryFormat::kPacked)
+    input.timer.end("recall", packing_traffic(histories.now.data.count()));
   const ComponentHistory& before = histories.before;
   ComponentHistory& now = histories.now;
   Channels<float>* debug = s.debug ? &s.debug : nullptr;

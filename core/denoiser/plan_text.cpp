@@ -62,6 +62,9 @@ std::string text_of(const Plan& plan, const Plan::Entry& entry) {
         (entry.follows_effect ? vectors_traffic() : 0) +
             blend_traffic(channels, recipe.blending == Blending::kExpectedError,
                           entry.follows_effect));
+  if (plan.history_format == HistoryFormat::kPacked)
+    add("history unpacked, and packed again",
+        2 * packing_traffic(ComponentHistory::channel_count(channels, plan.extras_of(channels))));
   if (recipe.gradient_levels > 0)
     text += name + (entry.gradients ? "history replaced sooner by gradient samples\n"
                                     : "no gradient samples, history at its fixed pace\n");

@@ -18,6 +18,9 @@ inline int statistics_traffic(int channels, bool footprint) {
          2 * pass_traffic(footprint ? 7 : 2, false, false) + (footprint ? 10 : 3);
 }
 
+/// Floats, and the same packed: about a third of that.
+inline int packing_traffic(int images) { return images + (images + 2) / 3; }
+
 /// Directions, guides, sample twice; cones gathered and updated; their passes.
 inline int cones_traffic(const Recipe& recipe) {
   const int passes = recipe.indirect_basis == RadianceBasis::kConesColour ? 4 : 2;

@@ -6,14 +6,14 @@
 namespace holdfast {
 namespace {
 
-constexpr int kShift = 20;  // bits of a float that a byte has no room for
-constexpr std::uint32_t kLost = (1u << kShift) - 1;
+/// Bits of a float's mantissa that a byte has room for.
+HOLDFAST_INLINE int mantissa_of(ByteKind kind) { return kind == ByteKind::kFine ? 5 : 3; }
 
 /// The magnitude bits of a float, less this, are those of its byte: the greatest block value, just
 /// below 2 and rounded up to it, has the greatest byte.
-HOLDFAST_INLINE std::int32_t base_of(bool with_sign) {
-  constexpr std::int32_t kTwo = (kFloatBias + 1) << 3;
-  return kTwo - (with_sign ? 127 : 255);
+HOLDFAST_INLINE std::int32_t base_of(ByteKind kind) {
+  const std::int32_t two = (kFloatBias + 1) << mantissa_of(kind);
+  return two - (kind == ByteKind::kSigned ? 127 : 255);
 }
 
 HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
@@ -22,14 +22,16 @@ HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
   const int shift = block_shift(in, a.count, 0);
   *a.exponent = static_cast<std::int8_t>(shift);
   const float scale = power_of_two(shift);
-  const std::int32_t base = base_of(a.with_sign);
+  const std::int32_t base = base_of(a.kind);
+  const int lost = 23 - mantissa_of(a.kind);  // bits of the float's mantissa
+  const std::uint32_t noise_mask = (1u << lost) - 1;
   const std::uint32_t* random = a.random;
-  const std::uint32_t sign_mask = a.with_sign ? 0x80u : 0u;
+  const std::uint32_t sign_mask = a.kind == ByteKind::kSigned ? 0x80u : 0u;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
-    const std::uint32_t noise = random[i] & kLost;
+    const std::uint32_t noise = random[i] & noise_mask;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
-    const std::uint32_t rounded = ((bits & kMagnitudeBits) + noise) >> kShift;
+    const std::uint32_t rounded = ((bits & kMagnitudeBits) + noise) >> lost;
     const std::int32_t code = max_of(static_cast<std::int32_t>(rounded) - base, 0);
     out[i] =
         static_cast<std::uint8_t>(static_cast<std::uint32_t>(code) | ((bits >> 24) & sign_mask));
@@ -40,12 +42,13 @@ HOLDFAST_INLINE void unpack_byte_body(const ByteUnpacking& a) {
   const std::uint8_t* in = a.in;
   float* out = a.out;
   const float scale = power_of_two(-a.exponent);
-  const auto base = static_cast<std::uint32_t>(base_of(a.with_sign));
-  const std::uint32_t sign_mask = a.with_sign ? 0x80u : 0u;
+  const auto base = static_cast<std::uint32_t>(base_of(a.kind));
+  const int lost = 23 - mantissa_of(a.kind);
+  const std::uint32_t sign_mask = a.kind == ByteKind::kSigned ? 0x80u : 0u;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
     const std::uint32_t byte = in[i], sign = byte & sign_mask, code = byte & ~sign_mask;
-    const std::uint32_t magnitude = code == 0 ? 0u : (code + base) << kShift;
+    const std::uint32_t magnitude = code == 0 ? 0u : (code + base) << lost;
     out[i] = std::bit_cast<float>(magnitude | (sign << 24)) * scale;
   }
 }

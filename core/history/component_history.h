@@ -22,7 +22,7 @@ struct ComponentHistory {
 
   ComponentHistory() = default;
   ComponentHistory(int width, int height, int signal_channels, HistoryExtras with)
-      : data(width, height, signal_channels + 1 + extra_channels(with)),
+      : data(width, height, channel_count(signal_channels, with)),
         channels(signal_channels),
         extras(with) {}
 
@@ -33,15 +33,16 @@ struct ComponentHistory {
   /// How its channels are kept when packed: the signal in halves, statistics in bytes.
   std::vector<KeptAs> kept_as() const {
     std::vector<KeptAs> as(static_cast<std::size_t>(channels), KeptAs::kHalf);
-    as.push_back(KeptAs::kByte);
+    as.push_back(KeptAs::kFineByte);
     if (has_moments()) as.insert(as.end(), {KeptAs::kHalf, KeptAs::kHalf});
     if (extras == HistoryExtras::kResidual)
       as.insert(as.end(),
                 {KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kByte});
     return as;
   }
-  static int extra_channels(HistoryExtras extras) {
-    return extras == HistoryExtras::kNone ? 0 : (extras == HistoryExtras::kMoments ? 2 : 4);
+  static int channel_count(int channels, HistoryExtras extras) {
+    const int more = extras == HistoryExtras::kNone ? 0 : extras == HistoryExtras::kMoments ? 2 : 4;
+    return channels + 1 + more;
   }
 
   ChannelView<const float> samples() const { return data[channels]; }

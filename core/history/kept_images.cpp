@@ -20,6 +20,11 @@ int count_of(const std::vector<KeptAs>& channels, bool halves) {
   }));
 }
 
+ByteKind byte_kind(KeptAs as) {
+  if (as == KeptAs::kFineByte) return ByteKind::kFine;
+  return as == KeptAs::kSignedByte ? ByteKind::kSigned : ByteKind::kPlain;
+}
+
 /// Calls `body(c, as, k)` for every channel c, which is the k-th of its kind.
 template <class Body>
 void for_each_channel(const std::vector<KeptAs>& channels, const Body& body) {
@@ -85,7 +90,7 @@ void KeptImages::unpack_row(int y, Channels<float>& room) const {
       if (as == KeptAs::kHalf)
         unpack_half_block({halves_[k].row(y) + x, count, exponent, out});
       else
-        unpack_byte_block({bytes_[k].row(y) + x, count, as == KeptAs::kSignedByte, exponent, out});
+        unpack_byte_block({bytes_[k].row(y) + x, count, byte_kind(as), exponent, out});
     });
   }
 }
@@ -104,8 +109,7 @@ void KeptImages::pack_row(int y, const Channels<float>& now, std::uint64_t key) 
       if (as == KeptAs::kHalf)
         pack_half_block({in, count, random, halves_[k].row(y) + x, exponent});
       else
-        pack_byte_block(
-            {in, count, as == KeptAs::kSignedByte, random, bytes_[k].row(y) + x, exponent});
+        pack_byte_block({in, count, byte_kind(as), random, bytes_[k].row(y) + x, exponent});
     });
   }
 }

@@ -19,7 +19,8 @@ enum class HistoryFormat {
 enum class KeptAs {
   kHalf,        ///< two bytes: half_block.h
   kByte,        ///< one byte, of values that are not negative: byte_block.h
-  kSignedByte,  ///< one byte
+  kFineByte,    ///< likewise, in finer steps over a shorter range
+  kSignedByte,  ///< one byte and of either sign
 };
 
 /// The images that a history keeps. They are floats while a frame is filtered, in rooms that many

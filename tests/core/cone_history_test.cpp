@@ -95,17 +95,22 @@ TEST(ConeHistory, LowersTheErrorUnderLightFromOneSide) {
 }
 
 TEST(ConeHistory, LeavesConstantRadianceAsItIs) {
-  const DenoiserConfig config = wall_config("reliable");
-  Denoiser denoiser(config);
-  for (int index = 0; index < 6; ++index) {
-    const Frame frame =
-        wall_frame(config, index, [](const glm::vec3&) { return glm::vec3(0.5f, 0.7f, 0.2f); });
-    const PlaneSet results = test::filtered(denoiser, frame);
-    const float expected[3] = {0.5f, 0.7f, 0.2f};
-    for (int c = 0; c < 3; ++c)
-      for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
-          ASSERT_NEAR(results.at(test::kIndirectPlane).channel(c).at(x, y), expected[c], 1e-5f);
+  for (const auto& [history, tolerance] : {std::pair{"f32", 1e-5f}, {"f16", 1e-4f}}) {
+    DenoiserConfig config = wall_config("reliable");
+    config.history = history;
+    Denoiser denoiser(config);
+    for (int index = 0; index < 6; ++index) {
+      const Frame frame =
+          wall_frame(config, index, [](const glm::vec3&) { return glm::vec3(0.5f, 0.7f, 0.2f); });
+      const PlaneSet results = test::filtered(denoiser, frame);
+      const float expected[3] = {0.5f, 0.7f, 0.2f};
+      for (int c = 0; c < 3; ++c)
+        for (int y = 0; y < kHeight; ++y)
+          for (int x = 0; x < kWidth; ++x)
+            ASSERT_NEAR(results.at(test::kIndirectPlane).channel(c).at(x, y), expected[c],
+                        tolerance)
+                << history;
+    }
   }
 }
 

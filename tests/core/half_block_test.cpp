@@ -40,12 +40,12 @@ std::vector<float> unpack(const Packed& packed, int count) {
   return out;
 }
 
-/// Values that look random, of every size within 2^-20..2^13 and either sign.
-std::vector<float> mixed_values(std::uint32_t seed, int count) {
+/// Values that look random, of every size of so many octaves below 2^13 and either sign.
+std::vector<float> mixed_values(std::uint32_t seed, int count, unsigned octaves = 33) {
   std::vector<float> out;
   for (int i = 0; i < count; ++i) {
     seed = seed * 1664525u + 1013904223u;
-    const int exponent = static_cast<int>((seed >> 27) % 33) - 20;
+    const int exponent = 12 - static_cast<int>((seed >> 21) % octaves);
     const float value = std::ldexp(1.0f + static_cast<float>(seed & 0xfffff) * 0x1p-20f, exponent);
     out.push_back((seed >> 26) & 1 ? -value : value);
   }
@@ -76,7 +76,7 @@ TEST(HalfBlock, EveryHalfBelowTheGreatestSurvivesTheRoundTripOnEveryInstructionS
 }
 
 TEST(HalfBlock, RoundsToOneOfTheTwoHalvesAroundAValueAndKeepsTheMean) {
-  const std::vector<float> values = mixed_values(5, kHalfBlock);
+  const std::vector<float> values = mixed_values(5, kHalfBlock, 24);
   std::vector<double> sums(kHalfBlock);
   constexpr int kDraws = 4000;
   for (std::uint32_t seed = 0; seed < kDraws; ++seed) {

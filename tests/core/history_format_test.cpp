@@ -131,6 +131,8 @@ struct Errors {
 // where a sample changes it by less than half a step of a half.
 TEST(HistoryFormat, AtRestErrorsAreThoseOfFloats) {
   DenoiserConfig config = config_of("balanced", 18, 14);
+  // Cones ask for directions of cosine density, which these are not.
+  std::erase(config.planes, PlaneId{PlaneKind::kIndirectDirection, {}});
   DenoiserConfig exact = config;
   exact.history = "f32";
   Denoiser packed(config), floats(exact);
