@@ -91,7 +91,7 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   assembler_.emplace(session_->config());
   deadlines_.greeted();
   const SessionCounters counters = session_->counters();
-  v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
+  v1::Welcome& welcome = *writer_.notice().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
   welcome.set_resumed(counters.last_frame.has_value());
   welcome.set_last_frame_index(counters.last_frame.value_or(0));
@@ -185,7 +185,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
   if (broken_) {
     release(slot);
   } else {
-    sending_.push_back(&slot);
+    writer_.add(slot, session_->config());
     write_on();
   }
   unlock_and_finish(lock);
@@ -225,40 +225,17 @@ void DenoiseStream::OnWriteDone(bool ok) {
 
 void DenoiseStream::write_on() {
   if (writing_ || broken_ || finished_) return;
-  writing_ = next_response();
-  if (!writing_) return;
-  state_.metrics.sent_bytes(response_.ByteSizeLong());
-  StartWrite(&response_);
-}
-
-/// Fills `response_`; false if there is nothing to send.
-bool DenoiseStream::next_response() {
-  if (!notices_.empty()) {
-    response_ = std::move(notices_.front());
-    notices_.pop_front();
-    return true;
-  }
-  while (!sending_.empty()) {
-    if (!sender_) sender_.emplace(*sending_.front(), session_->config(), coder_);
-    if (encode(*sending_.front())) return true;
-    sender_.reset();
-    FrameSlot& sent = *sending_.front();
-    sending_.pop_front();
-    const Clock::time_point now = Clock::now();
-    state_.metrics.sent(sent, now);
-    watch_->sent(sent, preset_, now);
-    release(sent);
-  }
-  return false;
-}
-
-/// Fills `response_` with the next message of the answer; false if there is none left.
-bool DenoiseStream::encode(FrameSlot& slot) {
-  const Clock::time_point start = Clock::now();
-  const bool more = sender_->next(response_);
-  slot.encode += Clock::now() - start;
-  if (more && response_.has_frame_result()) preset_ = response_.frame_result().preset();
-  return more;
+  const v1::DenoiseResponse* const response =
+      writer_.next([this](FrameSlot& slot, const std::string& preset) {
+        const Clock::time_point now = Clock::now();
+        state_.metrics.sent(slot, now);
+        watch_->sent(slot, preset, now);
+        release(slot);
+      });
+  if (response == nullptr) return;
+  writing_ = true;
+  state_.metrics.sent_bytes(response->ByteSizeLong());
+  StartWrite(response);
 }
 
 /// Makes the slot free and lets a waiting FrameBegin have it.
@@ -271,11 +248,10 @@ void DenoiseStream::release(FrameSlot& slot) {
 }
 
 void DenoiseStream::drop_unsent() {
-  sender_.reset();
-  notices_.clear();
-  for (FrameSlot* const slot : sending_) slot->answer.reset();
-  free_.insert(free_.end(), sending_.begin(), sending_.end());
-  sending_.clear();
+  for (FrameSlot* const slot : writer_.drop()) {
+    slot->answer.reset();
+    free_.push_back(slot);
+  }
 }
 
 // --- ending --------------------------------------------------------------------------------------
@@ -318,7 +294,7 @@ void DenoiseStream::tick(StreamDeadlines::TimePoint now) {
 
 void DenoiseStream::drain(std::chrono::milliseconds deadline) {
   std::unique_lock lock(mutex_);
-  notices_.emplace_back().mutable_draining()->set_deadline_ms(
+  writer_.notice().mutable_draining()->set_deadline_ms(
       static_cast<std::uint32_t>(deadline.count()));
   write_on();
   lock.unlock();
@@ -350,7 +326,7 @@ void DenoiseStream::end(const grpc::Status& status) {
 bool DenoiseStream::ready_to_finish() {
   if (finished_ || writing_ || !(read_all_ || broken_)) return false;
   if (broken_ && assembler_ && assembler_->open()) release(assembler_->abandon("a disconnect"));
-  return free_.size() == slots_.size() && sending_.empty() && notices_.empty();
+  return free_.size() == slots_.size() && writer_.empty();
 }
 
 void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {

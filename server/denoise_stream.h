@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,8 +10,8 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "server/answer_writer.h"
 #include "server/frame_assembler.h"
-#include "server/result_sender.h"
 #include "server/service_state.h"
 #include "server/stream_deadlines.h"
 
@@ -70,11 +69,9 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
-  bool next_response();
   void release(FrameSlot& slot);
   void drop_unsent();
   void decode(const v1::PlaneChunk& chunk);
-  bool encode(FrameSlot& slot);
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
@@ -101,13 +98,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   FrameSlot* open_ = nullptr;  ///< of the frame that the assembler has open
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
-  std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
-  wire::PlaneCoder coder_;          ///< of the sender
-  std::optional<ResultSender> sender_;
-  std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
-  std::string preset_;                       ///< of the answer that is being sent
+  AnswerWriter writer_;
   v1::DenoiseRequest request_;
-  v1::DenoiseResponse response_;
   int waiting_ = 0;        ///< whole good frames that wait to be filtered
   bool reading_ = false;   ///< a read is under way
   bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot or for its turn
