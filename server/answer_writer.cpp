@@ -1,6 +1,7 @@
 #include "server/answer_writer.h"
 
 #include <chrono>
+#include <utility>
 
 namespace holdfast::server {
 
@@ -8,34 +9,45 @@ void AnswerWriter::add(FrameSlot& slot, const SessionConfig& config) {
   answers_.push_back({&slot, &config});
 }
 
-const v1::DenoiseResponse* AnswerWriter::next(const Sent& sent) {
-  if (!notices_.empty()) {
-    response_ = std::move(notices_.front());
+const grpc::ByteBuffer* AnswerWriter::next(const Sent& sent) {
+  if (!notices_.empty() && !made_) {
+    wire::write_message(notices_.front(), message_.bytes);
     notices_.pop_front();
-    return &response_;
+    return &message_.bytes;
   }
-  while (!answers_.empty()) {
-    const Entry entry = answers_.front();
-    if (!sender_) sender_.emplace(*entry.slot, *entry.config, coder_);
-    if (encode(*entry.slot)) return &response_;
-    sender_.reset();
-    answers_.pop_front();
-    sent(*entry.slot, preset_);
-  }
-  return nullptr;
+  if (answers_.empty()) return nullptr;
+  begin();
+  if (!made_) encode_ahead();
+  if (*std::exchange(made_, {})) return &message_.bytes;
+  FrameSlot& slot = *answers_.front().slot;
+  sender_.reset();
+  message_ = {};  // lets go of the answer
+  answers_.pop_front();
+  sent(slot);
+  return needs_encoding() ? nullptr : next(sent);
 }
 
-/// Fills `response_` with the next message of the answer; false if there is none left.
-bool AnswerWriter::encode(FrameSlot& slot) {
+bool AnswerWriter::needs_encoding() {
+  return notices_.empty() && !answers_.empty() && !made_ && begin().config->wire != "exact";
+}
+
+/// The first answer, with its sender.
+const AnswerWriter::Entry& AnswerWriter::begin() {
+  const Entry& entry = answers_.front();
+  if (!sender_) sender_.emplace(*entry.slot, *entry.config, chunks_);
+  encoding_ = entry.slot;
+  return entry;
+}
+
+void AnswerWriter::encode_ahead() {
   const auto start = std::chrono::steady_clock::now();
-  const bool more = sender_->next(response_);
-  slot.encode += std::chrono::steady_clock::now() - start;
-  if (more && response_.has_frame_result()) preset_ = response_.frame_result().preset();
-  return more;
+  made_ = sender_->next(message_);
+  encoding_->encode += std::chrono::steady_clock::now() - start;
 }
 
 std::vector<FrameSlot*> AnswerWriter::drop() {
   sender_.reset();
+  made_.reset();
   notices_.clear();
   std::vector<FrameSlot*> slots;
   for (const Entry& entry : answers_) slots.push_back(entry.slot);

@@ -9,12 +9,12 @@ namespace holdfast::server {
 
 using Clock = std::chrono::steady_clock;
 
-DenoiseStream* DenoiseStream::start(ServiceState& state) {
+DenoiseStream* DenoiseStream::start(ServiceState& state, const std::string& peer) {
   const std::shared_ptr<DenoiseStream> stream(new DenoiseStream(state));
   stream->self_ = stream;
   std::unique_lock lock(stream->mutex_);
   try {
-    state.streams.add(stream);
+    state.streams.add(stream, peer);
     stream->read_on();
   } catch (...) {
     stream->refuse(std::current_exception());
@@ -34,10 +34,11 @@ void DenoiseStream::OnReadDone(bool ok) {
     if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
   } else if (!read_all_ && !broken_) {
     try {
-      state_.metrics.received_bytes(request_.ByteSizeLong());
-      const bool more = handle_request();
+      const std::size_t bytes = received_.Length();
+      state_.metrics.received_bytes(bytes);
+      const bool more = handle_message();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
-      if (rates_) hold_reading(rates_->count_bytes(request_.ByteSizeLong(), Clock::now()));
+      if (rates_) hold_reading(rates_->count_bytes(bytes, Clock::now()));
       if (more) read_on();
     } catch (...) {
       refuse(std::current_exception());
@@ -52,6 +53,18 @@ void DenoiseStream::OnReadDone(bool ok) {
 }
 
 /// True if the next message may be read.
+bool DenoiseStream::handle_message() {
+  if (const wire::ChunkView* const chunk = chunks_.read(received_);
+      chunk != nullptr && session_ && assembler_->open()) {
+    decode(*chunk);
+    return true;
+  }
+  if (!wire::parse_message(received_, request_))
+    throw InputError("message", "must be a DenoiseRequest", "something else");
+  return handle_request();
+}
+
+/// The same for a message that is not a chunk, or one at a wrong place.
 bool DenoiseStream::handle_request() {
   using Message = v1::DenoiseRequest;
   const auto kind = request_.message_case();
@@ -69,13 +82,13 @@ bool DenoiseStream::handle_request() {
     throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
                      "must be inside a frame", "outside");
   if (kind == Message::kPlaneChunk)
-    decode(request_.plane_chunk());
+    decode(wire::view_of(request_.plane_chunk()));
   else
     post(assembler_->end(request_.frame_end()));
   return true;
 }
 
-void DenoiseStream::decode(const v1::PlaneChunk& chunk) {
+void DenoiseStream::decode(const wire::ChunkView& chunk) {
   const Clock::time_point start = Clock::now();
   assembler_->add(chunk);
   open_->decode += Clock::now() - start;
@@ -90,6 +103,7 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   heir_ = attached.taken_over;
   assembler_.emplace(session_->config());
   deadlines_.greeted();
+  state_.streams.greeted(this);
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *writer_.notice().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
@@ -148,7 +162,7 @@ FrameSlot* DenoiseStream::free_slot() {
 void DenoiseStream::read_on() {
   if (reading_ || stalled_ || read_due_ || read_all_ || broken_ || finished_) return;
   reading_ = true;
-  StartRead(&request_);
+  StartRead(&received_);
 }
 
 // --- filtering -----------------------------------------------------------------------------------
@@ -208,50 +222,6 @@ void DenoiseStream::show_frame(const FrameSlot& slot) const try {
   watch_->preview().put(preview(slot.frame, slot.answer->results), now);
 } catch (const std::exception& error) {  // a picture for onlookers costs no frame
   state_.log->warn("event=no_preview session={} error=\"{}\"", session_->id(), error.what());
-}
-
-// --- writing -------------------------------------------------------------------------------------
-
-void DenoiseStream::OnWriteDone(bool ok) {
-  std::unique_lock lock(mutex_);
-  writing_ = false;
-  if (!ok) broken_ = true;
-  if (broken_)
-    drop_unsent();
-  else
-    write_on();
-  unlock_and_finish(lock);
-}
-
-void DenoiseStream::write_on() {
-  if (writing_ || broken_ || finished_) return;
-  const v1::DenoiseResponse* const response =
-      writer_.next([this](FrameSlot& slot, const std::string& preset) {
-        const Clock::time_point now = Clock::now();
-        state_.metrics.sent(slot, now);
-        watch_->sent(slot, preset, now);
-        release(slot);
-      });
-  if (response == nullptr) return;
-  writing_ = true;
-  state_.metrics.sent_bytes(response->ByteSizeLong());
-  StartWrite(response);
-}
-
-/// Makes the slot free and lets a waiting FrameBegin have it.
-void DenoiseStream::release(FrameSlot& slot) {
-  slot.answer.reset();
-  free_.push_back(&slot);
-  if (!stalled_ || read_due_) return;
-  begin_stalled();
-  read_on();
-}
-
-void DenoiseStream::drop_unsent() {
-  for (FrameSlot* const slot : writer_.drop()) {
-    slot->answer.reset();
-    free_.push_back(slot);
-  }
 }
 
 // --- ending --------------------------------------------------------------------------------------

@@ -29,11 +29,12 @@ namespace holdfast::server {
 /// Reactions and jobs run on different threads; one mutex guards everything. The reactor keeps
 /// itself alive until OnDone, jobs keep it alive while they run. Finish is called when no slot is
 /// in use and nothing is being written.
-class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse>,
+class DenoiseStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                             public std::enable_shared_from_this<DenoiseStream> {
  public:
   /// Makes the stream and starts it.
-  static DenoiseStream* start(ServiceState& state);
+  /// `peer`: address of its client, as gRPC writes it.
+  static DenoiseStream* start(ServiceState& state, const std::string& peer);
 
   /// Announces the shutdown, answers the frames in flight, then ends the stream.
   void drain(std::chrono::milliseconds deadline);
@@ -60,6 +61,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
                    StreamDeadlines::TimePoint::clock::now()) {}
 
   // All of these are called with the mutex held.
+  bool handle_message();
   bool handle_request();
   void handle_hello(const v1::Hello& hello);
   bool handle_frame_begin(const v1::FrameBegin& begin);
@@ -69,15 +71,18 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
+  const grpc::ByteBuffer* next_message();
   void release(FrameSlot& slot);
   void drop_unsent();
-  void decode(const v1::PlaneChunk& chunk);
+  void decode(const wire::ChunkView& chunk);
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
 
   /// The job of one frame; runs on the worker pool.
   void filter(FrameSlot& slot);
+  /// Makes the next message; runs on the encoders.
+  void encode();
   /// Takes the mutex off and calls Finish if everything is done.
   void unlock_and_finish(std::unique_lock<std::mutex>& lock);
   void log_frame(const FrameSlot& slot) const;
@@ -99,11 +104,13 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
   AnswerWriter writer_;
-  v1::DenoiseRequest request_;
-  int waiting_ = 0;        ///< whole good frames that wait to be filtered
-  bool reading_ = false;   ///< a read is under way
+  grpc::ByteBuffer received_;
+  wire::ChunkReader chunks_;
+  v1::DenoiseRequest request_;  ///< what was received, unless it is a chunk
+  int waiting_ = 0;             ///< whole good frames that wait to be filtered
+  bool reading_ = false;        ///< a read is under way
   bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot or for its turn
-  bool writing_ = false;   ///< a write is under way
+  bool writing_ = false;   ///< a message is being encoded or written
   bool read_all_ = false;  ///< the client has ended its side, or nothing more is to be read
   bool closing_ = false;   ///< ends after the frame that is being read
   bool broken_ = false;    ///< cancelled or disconnected: nothing can be sent

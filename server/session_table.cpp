@@ -5,6 +5,7 @@
 #include "core/frame/error.h"
 #include "server/error.h"
 #include "server/random_token.h"
+#include "server/transport_memory.h"
 
 namespace holdfast::server {
 namespace {
@@ -30,7 +31,7 @@ std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::s
                      "must be at most " + std::to_string(limits_.max_dimension) +
                          " pixels on each side on this server",
                      std::to_string(core.width) + "x" + std::to_string(core.height));
-  const std::size_t frames = frame_bytes(core, limits_.credits);
+  const std::size_t frames = frame_bytes(core, limits_.credits) + transport_bytes(config);
   admit(id, frames + estimated_denoiser_bytes(core), owner);
   try {
     auto session =

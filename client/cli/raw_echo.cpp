@@ -63,27 +63,25 @@ class Pair {
   }
 };
 
-/// Sends or receives `bytes` bytes through `buffer`; false if the other side is gone.
+/// Sends or receives all of `buffer`; false if the other side is gone.
 template <class Transfer>
-bool transfer(Transfer call, int fd, std::vector<std::byte>& buffer, std::size_t bytes) {
-  while (bytes > 0) {
-    const ssize_t moved = call(fd, buffer.data(), std::min(bytes, buffer.size()), 0);
+bool transfer(Transfer call, int fd, std::vector<std::byte>& buffer) {
+  for (std::size_t at = 0; at < buffer.size();) {
+    const ssize_t moved = call(fd, buffer.data() + at, std::min(kPiece, buffer.size() - at));
     if (moved < 0 && errno == EINTR) continue;
     if (moved <= 0) return false;
-    bytes -= static_cast<std::size_t>(moved);
+    at += static_cast<std::size_t>(moved);
   }
   return true;
 }
 
-bool put(int fd, std::vector<std::byte>& buffer, std::size_t bytes) {
-  return transfer(
-      [](int s, const void* p, std::size_t n, int) { return send(s, p, n, MSG_NOSIGNAL); }, fd,
-      buffer, bytes);
+bool put(int fd, std::vector<std::byte>& buffer) {
+  return transfer([](int s, const void* p, std::size_t n) { return send(s, p, n, MSG_NOSIGNAL); },
+                  fd, buffer);
 }
 
-bool get(int fd, std::vector<std::byte>& buffer, std::size_t bytes) {
-  return transfer([](int s, void* p, std::size_t n, int) { return recv(s, p, n, 0); }, fd, buffer,
-                  bytes);
+bool get(int fd, std::vector<std::byte>& buffer) {
+  return transfer([](int s, void* p, std::size_t n) { return recv(s, p, n, 0); }, fd, buffer);
 }
 
 /// A count of frames that threads wait for.
@@ -121,8 +119,7 @@ double own_cpu_seconds() {
 TransportCost raw_echo(bool tcp, std::size_t up, std::size_t down, int frames, int in_flight) {
   const Pair pair(tcp);
   const int client = pair.ends[0], server = pair.ends[1];
-  std::vector<std::byte> buffers[4];
-  for (auto& buffer : buffers) buffer.assign(kPiece, std::byte{1});
+  std::vector<std::byte> asked(up, std::byte{1}), heard(up), answer(down, std::byte{1}), got(down);
   Count credits(in_flight), whole(0);
   const auto each_frame = [frames](auto work) {
     return std::thread([frames, work] {
@@ -133,18 +130,18 @@ TransportCost raw_echo(bool tcp, std::size_t up, std::size_t down, int frames, i
   const auto start = std::chrono::steady_clock::now();
   std::thread threads[] = {each_frame([&] {
                              credits.take();
-                             put(client, buffers[0], up);
+                             put(client, asked);
                            }),
                            each_frame([&] {
-                             get(server, buffers[1], up);
+                             get(server, heard);
                              whole.give();
                            }),
                            each_frame([&] {
                              whole.take();
-                             put(server, buffers[2], down);
+                             put(server, answer);
                            }),
                            each_frame([&] {
-                             get(client, buffers[3], down);
+                             get(client, got);
                              credits.give();
                            })};
   for (std::thread& thread : threads) thread.join();

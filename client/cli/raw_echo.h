@@ -12,7 +12,8 @@ struct TransportCost {
 
 /// Moves `frames` frames of `up` bytes over a plain socket to a peer that answers each, once it has
 /// all of it, with `down` bytes: pieces of 1 MiB, `in_flight` frames at most not yet answered, each
-/// direction with a thread of its own on both sides. What a stream of frames costs at least.
+/// direction with a thread of its own on both sides, from and to memory of a frame's size. What a
+/// stream of frames costs at least.
 /// `tcp`: over the loopback address, else over a unix socket. Throws std::system_error.
 TransportCost raw_echo(bool tcp, std::size_t up, std::size_t down, int frames, int in_flight);
 
