@@ -2,7 +2,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(holdfast_libraries holdfast_client holdfast_frame holdfast_isa holdfast_proto holdfast_wire)
+set(holdfast_libraries holdfast_chunks holdfast_client holdfast_frame holdfast_isa holdfast_proto holdfast_wire)
 set(holdfast_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/holdfast)
 
 # Headers of the core quote each other from the top of the tree ("core/frame/plane.h"), which is

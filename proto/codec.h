@@ -42,6 +42,11 @@ class BlockCodec {
   /// never writes beyond these, nor reads beyond `in`. False without a codec.
   bool decompress(Codec codec, std::string_view in, std::byte* out, std::size_t bytes);
 
+  /// Memory that it may come to hold for blocks of 1 MiB, bytes: what zstd takes to compress at
+  /// level 1, and to decompress.
+  static constexpr std::size_t kCompressorBytes = 3u << 19;
+  static constexpr std::size_t kDecompressorBytes = 1u << 18;
+
  private:
   struct Free {
     void operator()(ZSTD_CCtx_s* context) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cstring>
 
 #include "proto/format_rows.h"
 
@@ -101,6 +102,32 @@ void write_plane_bytes(Plane& plane, PlaneFormat format, std::size_t offset, std
                  decode_row(format, in + at,
                             row_of<Plane, std::uint32_t>(plane, format, line, column, count));
                });
+}
+
+bool is_packed(const Plane& plane) {
+  const auto first = plane.words(0), last = plane.words(plane.channels() - 1);
+  return first.stride == plane.width() &&
+         last.data - first.data == (plane.channels() - 1) * first.stride * plane.height();
+}
+
+void write_full_bytes(Plane& plane, std::size_t offset, std::string_view piece) {
+  assert(offset + piece.size() <= plane_bytes(plane, full_format(plane.id().kind)));
+  const auto height = static_cast<std::size_t>(plane.height());
+  const std::size_t row = static_cast<std::size_t>(plane.width()) * sizeof(std::uint32_t);
+  if (is_packed(plane)) {
+    std::memcpy(reinterpret_cast<std::byte*>(plane.words(0).data) + offset, piece.data(),
+                piece.size());
+    return;
+  }
+  while (!piece.empty()) {
+    const std::size_t line = offset / row, at = offset % row;
+    const std::size_t bytes = std::min(row - at, piece.size());
+    auto* const out = reinterpret_cast<std::byte*>(
+        plane.words(static_cast<int>(line / height)).row(static_cast<int>(line % height)));
+    std::memcpy(out + at, piece.data(), bytes);
+    piece.remove_prefix(bytes);
+    offset += bytes;
+  }
 }
 
 PlaneFormat fitting_format(const Plane& plane, PlaneFormat wished) {

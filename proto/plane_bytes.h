@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "core/frame/plane.h"
 #include "core/frame/plane_size.h"
@@ -32,6 +33,12 @@ void read_plane_bytes(const Plane& plane, PlaneFormat format, std::size_t offset
 /// The inverse: from `in` to the plane.
 void write_plane_bytes(Plane& plane, PlaneFormat format, std::size_t offset, std::size_t bytes,
                        const std::byte* in);
+
+/// True if the plane lies in memory as in the layout of its full format, from words(0).data on.
+bool is_packed(const Plane& plane);
+/// Writes bytes of the full format at any byte `offset` of the layout: a piece of one that may
+/// begin and end within an element.
+void write_full_bytes(Plane& plane, std::size_t offset, std::string_view piece);
 
 /// The first of `wished`, the next wider one, and so on, that holds all values of the plane, so
 /// that no value changes its meaning on the way: ids are kept, infinities and NaN stay what they

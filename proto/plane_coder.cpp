@@ -47,18 +47,36 @@ std::size_t PlaneCoder::encode(const Plane& plane, PlaneCoding coding, std::size
 }
 
 bool PlaneCoder::decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
-                        std::string_view data) {
+                        std::span<const std::string_view> data) {
   assert(bytes <= kMaxChunkBytes);
-  const auto* in = reinterpret_cast<const std::byte*>(data.data());
-  if (data.size() != bytes) {
+  std::size_t size = 0;
+  for (const std::string_view piece : data) size += piece.size();
+  if (size == bytes && coding.format == full_format(plane.id().kind)) {
+    for (const std::string_view piece : data) {
+      write_full_bytes(plane, offset, piece);
+      offset += piece.size();
+    }
+    return true;
+  }
+  const std::string_view block = joined(data);
+  const auto* in = reinterpret_cast<const std::byte*>(block.data());
+  if (size != bytes) {
     std::byte* const plain = this->plain(2 * bytes);
     std::byte* const predicted = plain + bytes;
-    if (!codec_.decompress(coding.codec, data, predicted, bytes)) return false;
+    if (!codec_.decompress(coding.codec, block, predicted, bytes)) return false;
     restore_bytes(predicted, bytes, element_bytes(coding.format), row_elements(plane), plain);
     in = plain;
   }
   write_plane_bytes(plane, coding.format, offset, bytes, in);
   return true;
+}
+
+/// The pieces in one.
+std::string_view PlaneCoder::joined(std::span<const std::string_view> data) {
+  if (data.size() == 1) return data.front();
+  joined_.clear();
+  for (const std::string_view piece : data) joined_ += piece;
+  return joined_;
 }
 
 std::byte* PlaneCoder::plain(std::size_t bytes) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,7 @@ PlaneCoding coding_from_numbers(PlaneId plane, int format, int codec);
 
 /// Planes to and from the blocks that chunks carry: kMaxChunkBytes of a plane's bytes each, the
 /// last one less; for a codec predicted from the row above (predicted_bytes.h), then compressed,
-/// each by itself. Keeps its memory, two blocks at most. One thread at a time.
+/// each by itself. Keeps its memory, three blocks at most. One thread at a time.
 class PlaneCoder {
  public:
   /// Makes `data` the block of the plane that begins at `offset` of its bytes, with room for its
@@ -38,13 +39,23 @@ class PlaneCoder {
   /// unchanged, if `data` is neither a block of the codec that holds so many bytes nor these bytes
   /// themselves.
   bool decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
-              std::string_view data);
+              std::string_view data) {
+    return decode(plane, coding, offset, bytes, std::span(&data, 1));
+  }
+  /// The same for a block that came in pieces, at most kMaxChunkBytes together (asserted).
+  bool decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
+              std::span<const std::string_view> data);
+
+  /// Blocks of scratch that it may come to hold.
+  static constexpr std::size_t kEncodeBlocks = 2, kDecodeBlocks = 3;
 
  private:
   std::byte* plain(std::size_t bytes);
+  std::string_view joined(std::span<const std::string_view> data);
 
   BlockCodec codec_;
   std::vector<std::byte> plain_;
+  std::string joined_;
 };
 
 }  // namespace holdfast::wire

@@ -44,6 +44,7 @@ struct ServerConfig {
   std::chrono::milliseconds keepalive{10000};         ///< a silent peer is asked after this
   std::chrono::milliseconds keepalive_timeout{5000};  ///< and lost if it does not answer in this
   std::size_t max_streams = 256;                      ///< open streams, of all clients
+  std::size_t max_waiting_per_address = 64;           ///< of these, without Hello; 0 = no limit
   std::chrono::milliseconds hello_timeout{10000};     ///< for Hello in a new stream; 0 = none
   std::chrono::milliseconds frame_timeout{30000};     ///< from FrameBegin to FrameEnd; 0 = none
   TlsConfig tls;

@@ -5,14 +5,16 @@
 
 namespace holdfast::server {
 
-/// The streaming call: one DenoiseStream for each.
-class DenoiseService final : public v1::DenoiseService::CallbackService {
+/// The streaming call: one DenoiseStream for each. Messages are bytes here; the stream reads and
+/// writes them (proto/chunk_message.h).
+class DenoiseService final
+    : public v1::DenoiseService::WithRawCallbackMethod_Denoise<v1::DenoiseService::Service> {
  public:
   explicit DenoiseService(ServiceState& state) : state_(state) {}
 
-  grpc::ServerBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse>* Denoise(
-      grpc::CallbackServerContext*) override {
-    return DenoiseStream::start(state_);
+  grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Denoise(
+      grpc::CallbackServerContext* context) override {
+    return DenoiseStream::start(state_, context->peer());
   }
 
  private:

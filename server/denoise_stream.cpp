@@ -11,12 +11,12 @@ namespace holdfast::server {
 
 using Clock = std::chrono::steady_clock;
 
-DenoiseStream* DenoiseStream::start(ServiceState& state) {
+DenoiseStream* DenoiseStream::start(ServiceState& state, const std::string& peer) {
   const std::shared_ptr<DenoiseStream> stream(new DenoiseStream(state));
   stream->self_ = stream;
   std::unique_lock lock(stream->mutex_);
   try {
-    state.streams.add(stream);
+    state.streams.add(stream, peer);
     stream->read_on();
   } catch (...) {
     stream->refuse(std::current_exception());
@@ -36,10 +36,11 @@ void DenoiseStream::OnReadDone(bool ok) {
     if (assembler_ && assembler_->open()) post(assembler_->abandon("the end of the stream"));
   } else if (!read_all_ && !broken_) {
     try {
-      state_.metrics.received_bytes(request_.ByteSizeLong());
-      const bool more = handle_request();
+      const std::size_t bytes = received_.Length();
+      state_.metrics.received_bytes(bytes);
+      const bool more = handle_message();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
-      if (rates_) hold_reading(rates_->count_bytes(request_.ByteSizeLong(), Clock::now()));
+      if (rates_) hold_reading(rates_->count_bytes(bytes, Clock::now()));
       if (more) read_on();
     } catch (...) {
       refuse(std::current_exception());
@@ -54,6 +55,18 @@ void DenoiseStream::OnReadDone(bool ok) {
 }
 
 /// True if the next message may be read.
+bool DenoiseStream::handle_message() {
+  if (const wire::ChunkView* const chunk = chunks_.read(received_);
+      chunk != nullptr && session_ && assembler_->open()) {
+    decode(*chunk);
+    return true;
+  }
+  if (!wire::parse_message(received_, request_))
+    throw InputError("message", "must be a DenoiseRequest", "something else");
+  return handle_request();
+}
+
+/// The same for a message that is not a chunk, or one at a wrong place.
 bool DenoiseStream::handle_request() {
   using Message = v1::DenoiseRequest;
   const auto kind = request_.message_case();
@@ -71,13 +84,13 @@ bool DenoiseStream::handle_request() {
     throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
                      "must be inside a frame", "outside");
   if (kind == Message::kPlaneChunk)
-    decode(request_.plane_chunk());
+    decode(wire::view_of(request_.plane_chunk()));
   else
     post(assembler_->end(request_.frame_end()));
   return true;
 }
 
-void DenoiseStream::decode(const v1::PlaneChunk& chunk) {
+void DenoiseStream::decode(const wire::ChunkView& chunk) {
   const Clock::time_point start = Clock::now();
   assembler_->add(chunk);
   open_->decode += Clock::now() - start;
@@ -93,8 +106,9 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   config_ = session_->config();
   assembler_.emplace(*config_);
   deadlines_.greeted();
+  state_.streams.greeted(this);
   const SessionCounters counters = session_->counters();
-  v1::Welcome& welcome = *notices_.emplace_back().mutable_welcome();
+  v1::Welcome& welcome = *writer_.notice().mutable_welcome();
   welcome.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
   welcome.set_resumed(counters.last_frame.has_value());
   welcome.set_last_frame_index(counters.last_frame.value_or(0));
@@ -158,7 +172,7 @@ FrameSlot* DenoiseStream::free_slot() {
 void DenoiseStream::read_on() {
   if (reading_ || stalled_ || read_due_ || read_all_ || broken_ || finished_) return;
   reading_ = true;
-  StartRead(&request_);
+  StartRead(&received_);
 }
 
 // --- filtering -----------------------------------------------------------------------------------
@@ -200,7 +214,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
   if (broken_) {
     release(slot);
   } else {
-    sending_.push_back(&slot);
+    writer_.add(slot, *slot.config);
     write_on();
   }
   unlock_and_finish(lock);
@@ -226,74 +240,6 @@ void DenoiseStream::show_frame(const FrameSlot& slot) const try {
   watch_->preview().put(preview(slot.frame, slot.answer->results), now);
 } catch (const std::exception& error) {  // a picture for onlookers costs no frame
   state_.log->warn("event=no_preview session={} error=\"{}\"", session_->id(), error.what());
-}
-
-// --- writing -------------------------------------------------------------------------------------
-
-void DenoiseStream::OnWriteDone(bool ok) {
-  std::unique_lock lock(mutex_);
-  writing_ = false;
-  if (!ok) broken_ = true;
-  if (broken_)
-    drop_unsent();
-  else
-    write_on();
-  unlock_and_finish(lock);
-}
-
-void DenoiseStream::write_on() {
-  if (writing_ || broken_ || finished_) return;
-  writing_ = next_response();
-  if (!writing_) return;
-  state_.metrics.sent_bytes(response_.ByteSizeLong());
-  StartWrite(&response_);
-}
-
-/// Fills `response_`; false if there is nothing to send.
-bool DenoiseStream::next_response() {
-  if (!notices_.empty()) {
-    response_ = std::move(notices_.front());
-    notices_.pop_front();
-    return true;
-  }
-  while (!sending_.empty()) {
-    if (!sender_) sender_.emplace(*sending_.front(), *sending_.front()->config, coder_);
-    if (encode(*sending_.front())) return true;
-    sender_.reset();
-    FrameSlot& sent = *sending_.front();
-    sending_.pop_front();
-    const Clock::time_point now = Clock::now();
-    state_.metrics.sent(sent, now);
-    watch_->sent(sent, preset_, now);
-    release(sent);
-  }
-  return false;
-}
-
-/// Fills `response_` with the next message of the answer; false if there is none left.
-bool DenoiseStream::encode(FrameSlot& slot) {
-  const Clock::time_point start = Clock::now();
-  const bool more = sender_->next(response_);
-  slot.encode += Clock::now() - start;
-  if (more && response_.has_frame_result()) preset_ = response_.frame_result().preset();
-  return more;
-}
-
-/// Makes the slot free and lets a waiting FrameBegin have it.
-void DenoiseStream::release(FrameSlot& slot) {
-  slot.answer.reset();
-  free_.push_back(&slot);
-  if (!stalled_ || read_due_) return;
-  begin_stalled();
-  read_on();
-}
-
-void DenoiseStream::drop_unsent() {
-  sender_.reset();
-  notices_.clear();
-  for (FrameSlot* const slot : sending_) slot->answer.reset();
-  free_.insert(free_.end(), sending_.begin(), sending_.end());
-  sending_.clear();
 }
 
 // --- ending --------------------------------------------------------------------------------------
@@ -336,7 +282,7 @@ void DenoiseStream::tick(StreamDeadlines::TimePoint now) {
 
 void DenoiseStream::drain(std::chrono::milliseconds deadline) {
   std::unique_lock lock(mutex_);
-  notices_.emplace_back().mutable_draining()->set_deadline_ms(
+  writer_.notice().mutable_draining()->set_deadline_ms(
       static_cast<std::uint32_t>(deadline.count()));
   write_on();
   lock.unlock();
@@ -368,7 +314,7 @@ void DenoiseStream::end(const grpc::Status& status) {
 bool DenoiseStream::ready_to_finish() {
   if (finished_ || writing_ || !(read_all_ || broken_)) return false;
   if (broken_ && assembler_ && assembler_->open()) release(assembler_->abandon("a disconnect"));
-  return free_.size() == slots_.size() && sending_.empty() && notices_.empty();
+  return free_.size() == slots_.size() && writer_.empty();
 }
 
 void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {

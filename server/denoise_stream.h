@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,8 +10,8 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "server/answer_writer.h"
 #include "server/frame_assembler.h"
-#include "server/result_sender.h"
 #include "server/service_state.h"
 #include "server/stream_deadlines.h"
 
@@ -30,11 +29,12 @@ namespace holdfast::server {
 /// Reactions and jobs run on different threads; one mutex guards everything. The reactor keeps
 /// itself alive until OnDone, jobs keep it alive while they run. Finish is called when no slot is
 /// in use and nothing is being written.
-class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse>,
+class DenoiseStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                             public std::enable_shared_from_this<DenoiseStream> {
  public:
   /// Makes the stream and starts it.
-  static DenoiseStream* start(ServiceState& state);
+  /// `peer`: address of its client, as gRPC writes it.
+  static DenoiseStream* start(ServiceState& state, const std::string& peer);
 
   /// Announces the shutdown, answers the frames in flight, then ends the stream.
   void drain(std::chrono::milliseconds deadline);
@@ -61,6 +61,7 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
                    StreamDeadlines::TimePoint::clock::now()) {}
 
   // All of these are called with the mutex held.
+  bool handle_message();
   bool handle_request();
   void handle_hello(const v1::Hello& hello);
   bool handle_frame_begin(const v1::FrameBegin& begin);
@@ -71,17 +72,18 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
-  bool next_response();
+  const grpc::ByteBuffer* next_message();
   void release(FrameSlot& slot);
   void drop_unsent();
-  void decode(const v1::PlaneChunk& chunk);
-  bool encode(FrameSlot& slot);
+  void decode(const wire::ChunkView& chunk);
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
 
   /// The job of one frame; runs on the worker pool.
   void filter(FrameSlot& slot);
+  /// Makes the next message; runs on the encoders.
+  void encode();
   /// Takes the mutex off and calls Finish if everything is done.
   void unlock_and_finish(std::unique_lock<std::mutex>& lock);
   void log_frame(const FrameSlot& slot) const;
@@ -103,17 +105,14 @@ class DenoiseStream final : public grpc::ServerBidiReactor<v1::DenoiseRequest, v
   FrameSlot* open_ = nullptr;  ///< of the frame that the assembler has open
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
-  std::deque<FrameSlot*> sending_;  ///< answered frames, the first of which is being sent
-  wire::PlaneCoder coder_;          ///< of the sender
-  std::optional<ResultSender> sender_;
-  std::deque<v1::DenoiseResponse> notices_;  ///< Welcome, Draining
-  std::string preset_;                       ///< of the answer that is being sent
-  v1::DenoiseRequest request_;
-  v1::DenoiseResponse response_;
-  int waiting_ = 0;        ///< whole good frames that wait to be filtered
-  bool reading_ = false;   ///< a read is under way
+  AnswerWriter writer_;
+  grpc::ByteBuffer received_;
+  wire::ChunkReader chunks_;
+  v1::DenoiseRequest request_;  ///< what was received, unless it is a chunk
+  int waiting_ = 0;             ///< whole good frames that wait to be filtered
+  bool reading_ = false;        ///< a read is under way
   bool stalled_ = false;   ///< request_ holds a FrameBegin that waits for a slot or for its turn
-  bool writing_ = false;   ///< a write is under way
+  bool writing_ = false;   ///< a message is being encoded or written
   bool read_all_ = false;  ///< the client has ended its side, or nothing more is to be read
   bool closing_ = false;   ///< ends after the frame that is being read
   bool broken_ = false;    ///< cancelled or disconnected: nothing can be sent

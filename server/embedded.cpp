@@ -29,9 +29,11 @@ class PrivateDirectory {
   std::filesystem::path path_;
 };
 
-ServerConfig config_for(const std::filesystem::path& dir, int threads, const std::string& level) {
+ServerConfig config_for(const std::filesystem::path& dir, int threads, const std::string& level,
+                        EmbeddedServer::Link link) {
   ServerConfig config;
-  config.listen = "unix:" + (dir / "socket").string();
+  config.listen =
+      link == EmbeddedServer::Link::kTcp ? "127.0.0.1:0" : "unix:" + (dir / "socket").string();
   config.threads = threads;
   config.log_level = level;
   return config;
@@ -41,14 +43,14 @@ ServerConfig config_for(const std::filesystem::path& dir, int threads, const std
 
 class EmbeddedServer::Impl {
  public:
-  Impl(int threads, const std::string& log_level)
-      : server(config_for(directory.path(), threads, log_level)) {}
+  Impl(int threads, const std::string& log_level, Link link)
+      : server(config_for(directory.path(), threads, log_level, link)) {}
   PrivateDirectory directory;
   Server server;
 };
 
-EmbeddedServer::EmbeddedServer(int threads, const std::string& log_level)
-    : impl_(std::make_unique<Impl>(threads, log_level)) {}
+EmbeddedServer::EmbeddedServer(int threads, const std::string& log_level, Link link)
+    : impl_(std::make_unique<Impl>(threads, log_level, link)) {}
 EmbeddedServer::~EmbeddedServer() = default;
 const std::string& EmbeddedServer::address() const { return impl_->server.address(); }
 

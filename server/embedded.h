@@ -5,12 +5,15 @@
 
 namespace holdfast::server {
 
-/// A server in this process, reached through gRPC over a unix socket in a private directory. The
-/// only header of the server that a client program may include.
+/// A server in this process, reached through gRPC over a unix socket in a private directory, or
+/// over the loopback address. The only header of the server that a client program may include.
 class EmbeddedServer {
  public:
+  enum class Link { kUnix, kTcp };
+
   /// `threads` that filter, 0 = one for each core. `log_level` as in ServerConfig.
-  explicit EmbeddedServer(int threads = 0, const std::string& log_level = "warn");
+  explicit EmbeddedServer(int threads = 0, const std::string& log_level = "warn",
+                          Link link = Link::kUnix);
   /// Stops the server and removes the socket.
   ~EmbeddedServer();
 

@@ -18,13 +18,14 @@ std::string size_text(std::uint64_t width, std::uint64_t height) {
 std::string bytes_text(std::uint64_t bytes) { return std::to_string(bytes) + " bytes"; }
 
 /// Bytes of the plane that a chunk holds; throws InputError if its sizes break a rule.
-std::uint64_t held_bytes(const v1::PlaneChunk& chunk, wire::PlaneCoding coding,
+std::uint64_t held_bytes(const wire::ChunkView& chunk, wire::PlaneCoding coding,
                          const std::string& name) {
   const bool coded = coding.codec != wire::Codec::kNone;
-  if (!coded && chunk.plain_bytes() != 0)
+  const std::uint32_t plain_bytes = chunk.fields.plain_bytes;
+  if (!coded && plain_bytes != 0)
     throw InputError("plain_bytes of a chunk of " + name, "must be 0 without a codec",
-                     std::to_string(chunk.plain_bytes()));
-  const std::uint64_t bytes = coded ? chunk.plain_bytes() : chunk.data().size();
+                     std::to_string(plain_bytes));
+  const std::uint64_t bytes = coded ? plain_bytes : chunk.data_bytes;
   const std::size_t element = wire::element_bytes(coding.format);
   if (bytes == 0 || bytes > wire::kMaxChunkBytes || bytes % element != 0)
     throw InputError("chunk of " + name,
@@ -32,9 +33,9 @@ std::uint64_t held_bytes(const v1::PlaneChunk& chunk, wire::PlaneCoding coding,
                          std::to_string(element) + " and at most " +
                          std::to_string(wire::kMaxChunkBytes),
                      bytes_text(bytes));
-  if (coded && chunk.data().size() > bytes)
+  if (coded && chunk.data_bytes > bytes)
     throw InputError("data of a chunk of " + name, "must be at most its " + bytes_text(bytes),
-                     bytes_text(chunk.data().size()));
+                     bytes_text(chunk.data_bytes));
   return bytes;
 }
 
@@ -94,7 +95,7 @@ void FrameAssembler::announce(const v1::FramePlane& message) {
   progress.size = wire::plane_bytes(id, size, progress.coding.format);
 }
 
-void FrameAssembler::add(const v1::PlaneChunk& chunk) {
+void FrameAssembler::add(const wire::ChunkView& chunk) {
   if (slot_->error) return;
   try {
     write(chunk);
@@ -103,36 +104,37 @@ void FrameAssembler::add(const v1::PlaneChunk& chunk) {
   }
 }
 
-void FrameAssembler::write(const v1::PlaneChunk& chunk) {
-  if (chunk.plane() >= progress_.size())
+void FrameAssembler::write(const wire::ChunkView& chunk) {
+  const auto& [number, offset, last, plain_bytes] = chunk.fields;
+  if (number >= progress_.size())
     throw InputError(
-        "plane number " + std::to_string(chunk.plane()),
+        "plane number " + std::to_string(number),
         "must be less than the session's " + std::to_string(progress_.size()) + " planes",
         "unknown");
-  Progress& progress = progress_[chunk.plane()];
-  const std::string name = "plane " + plane_name(config_->denoiser.planes[chunk.plane()]);
+  Progress& progress = progress_[number];
+  const std::string name = "plane " + plane_name(config_->denoiser.planes[number]);
   if (progress.complete)
     throw InputError("chunk of " + name, "must not follow the plane's last chunk",
-                     "at offset " + std::to_string(chunk.offset()));
+                     "at offset " + std::to_string(offset));
   const std::uint64_t bytes = held_bytes(chunk, progress.coding, name);
-  if (chunk.offset() != progress.received)
+  if (offset != progress.received)
     throw InputError("offset of a chunk of " + name,
                      "must be " + std::to_string(progress.received) + ", where the last one ended",
-                     std::to_string(chunk.offset()));
+                     std::to_string(offset));
   if (bytes > progress.size - progress.received)
     throw InputError(name, "must have " + bytes_text(progress.size),
                      "at least " + bytes_text(progress.received + bytes));
-  if (!coder_.decode(*progress.plane, progress.coding, progress.received, bytes, chunk.data()))
+  if (!coder_.decode(*progress.plane, progress.coding, progress.received, bytes, chunk.data))
     throw InputError("data of a chunk of " + name,
                      "must be " + bytes_text(bytes) + " of " +
                          std::string(wire::codec_name(progress.coding.codec)),
                      "corrupt");
   progress.received += bytes;
-  progress.complete = chunk.last();
-  if (chunk.last() != (progress.received == progress.size))
+  progress.complete = last;
+  if (last != (progress.received == progress.size))
     throw InputError("last of a chunk of " + name,
                      "must be set exactly on the chunk that ends at " + bytes_text(progress.size),
-                     (chunk.last() ? "set at " : "not set at ") + bytes_text(progress.received));
+                     (last ? "set at " : "not set at ") + bytes_text(progress.received));
 }
 
 FrameSlot& FrameAssembler::end(const v1::FrameEnd& message) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/chunk_message.h"
 #include "proto/plane_coder.h"
 #include "server/frame_slot.h"
 #include "server/session.h"
@@ -26,7 +27,7 @@ class FrameAssembler {
   /// Starts a frame in `slot`.
   void begin(const v1::FrameBegin& message, FrameSlot& slot);
   /// Adds a piece of a plane to the open frame.
-  void add(const v1::PlaneChunk& chunk);
+  void add(const wire::ChunkView& chunk);
   /// Closes the open frame and returns its slot, with an error if it is not complete.
   FrameSlot& end(const v1::FrameEnd& message);
   /// Closes the open frame as incomplete, because `instead` came where FrameEnd had to.
@@ -42,7 +43,7 @@ class FrameAssembler {
   };
 
   void announce(const v1::FramePlane& message);
-  void write(const v1::PlaneChunk& chunk);
+  void write(const wire::ChunkView& chunk);
   FrameSlot& close();
 
   const SessionConfig* config_;

@@ -70,6 +70,11 @@ void add_options(CLI::App& app, ServerConfig& config) {
   knobs.value("--max-streams", config.max_streams, "streams that may be open at once")
       ->check(CLI::Range(1, 100000));
   knobs
+      .value("--max-waiting-per-address", config.max_waiting_per_address,
+             "streams of one IPv4 address or IPv6 /64 network that have not said Hello; 0 = no "
+             "limit")
+      ->check(CLI::Range(0, 100000));
+  knobs
       .value("--max-dimension", config.limits.max_dimension, "pixels, width and height of a frame")
       ->check(CLI::Range(1, kMaxDimension));
   knobs.bytes("--max-session-bytes", config.limits.max_session_bytes, "memory of one session");

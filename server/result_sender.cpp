@@ -1,11 +1,12 @@
 #include "server/result_sender.h"
 
+#include "holdfast/v1/denoise_service.pb.h"
 #include "proto/wire_profile.h"
 #include "server/convert.h"
 
 namespace holdfast::server {
 
-bool ResultSender::next(v1::DenoiseResponse& response) {
+bool ResultSender::next(wire::OutgoingMessage& message) {
   const bool has_planes = !slot_.error && !slot_.answer->dropped;
   if (!begun_) {
     begun_ = true;
@@ -13,25 +14,18 @@ bool ResultSender::next(v1::DenoiseResponse& response) {
     if (has_planes)
       for (const PlaneId id : config_.results)
         codings_.push_back(wire::fitting_coding(slot_.answer->results.at(id), profile.result));
-    response.Clear();
+    v1::DenoiseResponse response;
     write_frame_result(slot_, config_, codings_, *response.mutable_frame_result());
+    wire::write_message(response, message.bytes);
+    message.plane_bytes = 0;
     return true;
   }
   if (!has_planes || plane_ == config_.results.size()) return false;
 
   const Plane& plane = slot_.answer->results.at(config_.results[plane_]);
-  const wire::PlaneCoding coding = codings_[plane_];
-  v1::PlaneChunk& chunk = *response.mutable_plane_chunk();  // keeps the buffer of the chunk before
-  chunk.set_plane(static_cast<std::uint32_t>(plane_));
-  chunk.set_offset(offset_);
-  const std::size_t bytes = coder_.encode(plane, coding, offset_, *chunk.mutable_data());
-  chunk.set_plain_bytes(coding.codec == wire::Codec::kNone ? 0 : static_cast<std::uint32_t>(bytes));
-  offset_ += bytes;
-  chunk.set_last(offset_ == wire::plane_bytes(plane, coding.format));
-  if (chunk.last()) {
-    offset_ = 0;
-    ++plane_;
-  }
+  offset_ = chunks_.write(plane, codings_[plane_], static_cast<std::uint32_t>(plane_), offset_,
+                          slot_.answer, message);
+  if (offset_ == 0) ++plane_;
   return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 
@@ -7,6 +8,7 @@
 
 #include "server/calibrated_costs.h"
 #include "server/config.h"
+#include "server/encoders.h"
 #include "server/metrics.h"
 #include "server/scheduler.h"
 #include "server/session_table.h"
@@ -22,8 +24,9 @@ struct ServiceState {
         log(std::move(l)),
         tokens(c.token_file),
         sessions(c.limits),
-        streams(c.max_streams),
+        streams(c.max_streams, c.max_waiting_per_address),
         scheduler(c.threads),
+        encoders(std::max(1, scheduler.threads() / 4)),
         costs(scheduler) {
     if (c.calibrate) costs.get();
   }
@@ -35,6 +38,7 @@ struct ServiceState {
   SessionTable sessions;
   StreamRegistry streams;
   Scheduler scheduler;
+  Encoders encoders;  ///< as many as lead in the scheduler
   CalibratedCosts costs;
   std::atomic<bool> draining{false};
   const std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();

@@ -5,6 +5,7 @@
 #include "core/frame/error.h"
 #include "server/error.h"
 #include "server/random_token.h"
+#include "server/transport_memory.h"
 
 namespace holdfast::server {
 namespace {
@@ -24,8 +25,9 @@ SessionTable::SessionTable(SessionLimits limits, Clock clock)
 std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::string& owner) {
   const std::string id = random_hex(kIdBytes);
   expire();
-  const std::size_t frames = frame_bytes(config.denoiser, limits_.credits);
-  admit(id, needed_bytes(config.denoiser), owner);
+  const std::size_t frames =
+      frame_bytes(config.denoiser, limits_.credits) + transport_bytes(config);
+  admit(id, needed_bytes(config), owner);
   try {
     auto session =
         std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
@@ -88,18 +90,20 @@ void SessionTable::settle(const std::string& id, std::size_t bytes) {
 }
 
 /// Without making anything of that size.
-std::size_t SessionTable::needed_bytes(const DenoiserConfig& config) const {
+std::size_t SessionTable::needed_bytes(const SessionConfig& session) const {
+  const DenoiserConfig& config = session.denoiser;
   if (std::max(config.width, config.height) > limits_.max_dimension)
     throw InputError("size of a frame",
                      "must be at most " + std::to_string(limits_.max_dimension) +
                          " pixels on each side on this server",
                      std::to_string(config.width) + "x" + std::to_string(config.height));
-  return frame_bytes(config, limits_.credits) + estimated_denoiser_bytes(config);
+  return frame_bytes(config, limits_.credits) + transport_bytes(session) +
+         estimated_denoiser_bytes(config);
 }
 
 std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& session,
                                             const SessionConfig& config) {
-  const std::size_t bytes = needed_bytes(config.denoiser);
+  const std::size_t bytes = needed_bytes(config);
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = live_entry(session->id());
@@ -112,8 +116,9 @@ std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& sess
 }
 
 void SessionTable::end_reservation(const Session& session, std::size_t bytes) {
-  const std::size_t has =
-      session.denoiser_bytes() + frame_bytes(session.config()->denoiser, limits_.credits);
+  const std::shared_ptr<const SessionConfig> config = session.config();
+  const std::size_t has = session.denoiser_bytes() +
+                          frame_bytes(config->denoiser, limits_.credits) + transport_bytes(*config);
   const std::lock_guard lock(mutex_);
   const auto it = entries_.find(session.id());
   if (it == entries_.end() || it->second.session.get() != &session) return;

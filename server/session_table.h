@@ -91,7 +91,7 @@ class SessionTable {
   void check_owner(const std::string& owner) const;
   void settle(const std::string& id, std::size_t bytes);
   void end_reservation(const Session& session, std::size_t bytes);
-  std::size_t needed_bytes(const DenoiserConfig& config) const;
+  std::size_t needed_bytes(const SessionConfig& session) const;
   void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
 
   const SessionLimits limits_;

@@ -1,7 +1,10 @@
 #include "server/stream_registry.h"
 
+#include <algorithm>
+
 #include "server/denoise_stream.h"
 #include "server/error.h"
+#include "server/peer.h"
 
 namespace holdfast::server {
 namespace {
@@ -10,13 +13,27 @@ constexpr std::chrono::milliseconds kRetryStream{1000};
 
 }  // namespace
 
-void StreamRegistry::add(const std::shared_ptr<DenoiseStream>& stream) {
+void StreamRegistry::add(const std::shared_ptr<DenoiseStream>& stream, const std::string& peer) {
+  const std::string network = most_waiting_ > 0 ? peer_network(peer) : std::string();
   const std::lock_guard lock(mutex_);
   if (draining_) throw RefusedError(Refusal::kDraining, "the server is shutting down");
   if (streams_.size() >= most_)
     throw RefusedError("the server has " + std::to_string(most_) + " streams, the most it allows",
                        {"max-streams", kRetryStream});
-  streams_[stream.get()] = stream;
+  const auto of_peer = [&](const auto& entry) { return entry.second.waiting == network; };
+  if (!network.empty() && std::count_if(streams_.begin(), streams_.end(), of_peer) >=
+                              static_cast<std::ptrdiff_t>(most_waiting_))
+    throw RefusedError(
+        std::to_string(most_waiting_) +
+            " streams of this address have not said Hello, the most the server allows",
+        {"max-waiting-per-address", kRetryStream});
+  streams_[stream.get()] = {stream, network};
+}
+
+void StreamRegistry::greeted(const DenoiseStream* stream) {
+  const std::lock_guard lock(mutex_);
+  const auto it = streams_.find(stream);
+  if (it != streams_.end()) it->second.waiting.clear();
 }
 
 std::size_t StreamRegistry::size() const {
@@ -33,8 +50,8 @@ void StreamRegistry::remove(const DenoiseStream* stream) {
 std::vector<std::shared_ptr<DenoiseStream>> StreamRegistry::all() const {
   std::vector<std::shared_ptr<DenoiseStream>> out;
   const std::lock_guard lock(mutex_);
-  for (const auto& [key, weak] : streams_)
-    if (auto stream = weak.lock()) out.push_back(std::move(stream));
+  for (const auto& [key, entry] : streams_)
+    if (auto stream = entry.stream.lock()) out.push_back(std::move(stream));
   return out;
 }
 

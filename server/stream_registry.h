@@ -17,12 +17,16 @@ class DenoiseStream;
 /// The open streams, so that a shutdown can drain them and DeleteSession can close one.
 class StreamRegistry {
  public:
-  /// `most`: streams that may be open at once.
-  explicit StreamRegistry(std::size_t most) : most_(most) {}
+  /// `most`: streams that may be open at once; `most_waiting`: of one peer network (peer.h) that
+  /// have not said Hello, 0 = no limit.
+  StreamRegistry(std::size_t most, std::size_t most_waiting)
+      : most_(most), most_waiting_(most_waiting) {}
 
   /// Throws RefusedError, and the stream is not added, once `drain` was called (kDraining) or if
-  /// too many are open (kLimit).
-  void add(const std::shared_ptr<DenoiseStream>& stream);
+  /// too many are open (kLimit), or too many of its peer's wait for Hello.
+  void add(const std::shared_ptr<DenoiseStream>& stream, const std::string& peer);
+  /// The stream has said Hello.
+  void greeted(const DenoiseStream* stream);
   void remove(const DenoiseStream* stream);
   /// Closes the streams of a session, if it has any.
   void close_session(const std::string& session_id);
@@ -39,10 +43,15 @@ class StreamRegistry {
  private:
   std::vector<std::shared_ptr<DenoiseStream>> all() const;
 
-  const std::size_t most_;
+  struct Entry {
+    std::weak_ptr<DenoiseStream> stream;
+    std::string waiting;  ///< network of the peer until Hello; empty if it does not count
+  };
+
+  const std::size_t most_, most_waiting_;
   mutable std::mutex mutex_;
   std::condition_variable empty_;
-  std::map<const DenoiseStream*, std::weak_ptr<DenoiseStream>> streams_;
+  std::map<const DenoiseStream*, Entry> streams_;
   bool draining_ = false;
 };
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/cli/bench.h"
+#include "client/cli/bench_transport.h"
 #include "client/cli/command.h"
 #include "client/cli/image_size.h"
 #include "client/cli/json_file.h"
@@ -9,23 +10,37 @@
 #include "client/scenes/load.h"
 
 namespace holdfast::cli {
+namespace {
+
+void bench_transport(TransportOptions options, const std::string& size, const std::string& json,
+                     bool quiet) {
+  if (!size.empty()) parse_image_size("option --size", size, options.width, options.height);
+  const TransportResult result = run_transport_bench(options);
+  if (!json.empty()) write_json_file(json, transport_json(result));
+  if (!quiet) std::fputs(transport_text(result).c_str(), stdout);
+}
+
+}  // namespace
 
 void add_bench(CLI::App& app) {
   struct Arguments {
     BenchOptions options;
-    std::string size = "1920x1080", json;
-    bool plan = false, quiet = false, no_reference = false;
+    TransportOptions transport_options;
+    std::string size, json;
+    bool plan = false, quiet = false, no_reference = false, transport = false;
   };
   const auto args = std::make_shared<Arguments>();
   BenchOptions& options = args->options;
-  CLI::App& command = *app.add_subcommand("bench", "Time the core alone, stage by stage");
+  CLI::App& command =
+      *app.add_subcommand("bench", "Time the core, stage by stage, or the transport");
   command
       .add_option("--scene", options.scene,
                   "Folder of a sequence, scene JSON file, or a built-in scene: " +
                       scenes::builtin_scene_names())
       ->capture_default_str();
-  command.add_option("--size", args->size, "WIDTHxHEIGHT in pixels; a sequence has its own")
-      ->capture_default_str();
+  command.add_option("--size", args->size,
+                     "WIDTHxHEIGHT in pixels; a sequence has its own. Default: 1920x1080, of the "
+                     "transport 1920x546, which is 32 MiB up");
   command
       .add_option("--recipes", options.recipes,
                   "Recipes, with commas between; stages are the first one's. Default: reliable")
@@ -45,10 +60,26 @@ void add_bench(CLI::App& app) {
   command.add_flag("--one-signal", options.one_signal,
                    "Also time one signal of three channels under svgf with four levels");
   command.add_flag("--plan", args->plan, "Also print the first recipe's plan");
+  command.add_flag("--transport", args->transport,
+                   "Instead, move frames through a server over TCP and a unix socket, without "
+                   "filtering, against plain sockets");
+  command
+      .add_option("--rounds", args->transport_options.rounds,
+                  "Of the transport, --frames frames each")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--wire", args->transport_options.wire, "Wire profile of the transport")
+      ->capture_default_str();
   command.add_flag("--quiet", args->quiet, "No table");
   command.add_option("--json", args->json, "File for the machine-readable result");
-  command.callback([args] {
-    parse_image_size("option --size", args->size, args->options.width, args->options.height);
+  command.callback([args, &command] {
+    if (args->transport) {
+      if (command.count("--frames") > 0) args->transport_options.frames = args->options.frames;
+      bench_transport(args->transport_options, args->size, args->json, args->quiet);
+      return;
+    }
+    if (!args->size.empty())
+      parse_image_size("option --size", args->size, args->options.width, args->options.height);
     args->options.reference = !args->no_reference;
     const BenchResult result = run_bench(args->options);
     if (!args->json.empty()) write_json_file(args->json, bench_json(result));

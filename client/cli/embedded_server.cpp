@@ -7,11 +7,15 @@ namespace holdfast::cli {
 class EmbeddedServer::Impl {
  public:
   // Errors of frames reach the client, which reports them; the log would only repeat them.
-  explicit Impl(int threads) : server(threads, "error") {}
+  Impl(int threads, Link link)
+      : server(threads, "error",
+               link == Link::kTcp ? server::EmbeddedServer::Link::kTcp
+                                  : server::EmbeddedServer::Link::kUnix) {}
   server::EmbeddedServer server;
 };
 
-EmbeddedServer::EmbeddedServer(int threads) : impl_(std::make_unique<Impl>(threads)) {}
+EmbeddedServer::EmbeddedServer(int threads, Link link)
+    : impl_(std::make_unique<Impl>(threads, link)) {}
 EmbeddedServer::~EmbeddedServer() = default;
 const std::string& EmbeddedServer::address() const { return impl_->server.address(); }
 

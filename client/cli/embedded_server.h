@@ -9,8 +9,11 @@ namespace holdfast::cli {
 /// `address` through gRPC as they reach any other.
 class EmbeddedServer {
  public:
-  /// `threads` that filter; 0 = one for each core.
-  explicit EmbeddedServer(int threads);
+  enum class Link { kUnix, kTcp };
+
+  /// `threads` that filter; 0 = one for each core. Over a unix socket, or over the loopback
+  /// address.
+  explicit EmbeddedServer(int threads, Link link = Link::kUnix);
   ~EmbeddedServer();
   const std::string& address() const;
 

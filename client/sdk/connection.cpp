@@ -2,19 +2,21 @@
 
 namespace holdfast::client {
 
-Connection::Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Config config,
+Connection::Connection(grpc::GenericStub& stub, Exchange& exchange, Config config,
                        const v1::Hello& hello)
     : exchange_(exchange),
       config_(std::move(config)),
       writer_{config_.wire, {}},
       assembler_(config_.results) {
   const std::lock_guard lock(mutex_);  // reactions see a finished object, and wait for it here
-  stub.async()->Denoise(&context_, this);
-  *request_.mutable_hello() = hello;
+  stub.PrepareBidiStreamingCall(&context_, "/holdfast.v1.DenoiseService/Denoise", {}, this);
+  v1::DenoiseRequest first;
+  *first.mutable_hello() = hello;
+  wire::write_message(first, request_);
   writing_ = true;
   AddHold();
   StartWrite(&request_);
-  StartRead(&response_);
+  StartRead(&received_);
   StartCall();
   if (config_.wire != &wire::exact_profile()) encoder_ = std::thread([this] { encode(); });
 }
@@ -58,14 +60,14 @@ void Connection::OnReadDone(bool ok) {
   {
     const std::lock_guard lock(mutex_);
     if (ok && violation_.empty()) try {
-        handle_response();
+        handle_message();
         write_on();  // an answer is a credit
       } catch (const std::exception& error) {
         violation_ = error.what();
         context_.TryCancel();
       }
     if (ok) {
-      StartRead(&response_);
+      StartRead(&received_);
     } else {
       ended_ = true;
       release = true;
@@ -76,6 +78,19 @@ void Connection::OnReadDone(bool ok) {
   if (release) RemoveHold();
 }
 
+void Connection::handle_message() {
+  const wire::ChunkView* const chunk = chunks_.read(received_);
+  if (chunk == nullptr) {
+    if (!wire::parse_message(received_, response_))
+      throw std::runtime_error("a message that is not a DenoiseResponse");
+    handle_response();
+    return;
+  }
+  exchange_.count(0, chunk->data_bytes);
+  if (assembler_.add(*chunk)) exchange_.answered(assembler_.take());
+}
+
+/// The same for a message that is not a chunk, or one that is written in an unusual way.
 void Connection::handle_response() {
   using Message = v1::DenoiseResponse;
   switch (response_.message_case()) {
@@ -89,7 +104,8 @@ void Connection::handle_response() {
       break;
     case Message::kPlaneChunk:
       exchange_.count(0, response_.plane_chunk().data().size());
-      if (assembler_.add(response_.plane_chunk())) exchange_.answered(assembler_.take());
+      if (assembler_.add(wire::view_of(response_.plane_chunk())))
+        exchange_.answered(assembler_.take());
       break;
     default:
       break;  // Draining: the server ends the stream itself once the frames in flight are answered
@@ -129,7 +145,7 @@ void Connection::write_on() {
 
 /// Makes the next message, of the frame at hand or the next one; false if there is nothing to send
 /// now. Takes `lock`, if given, off while it encodes.
-bool Connection::next_message(v1::DenoiseRequest& message, std::unique_lock<std::mutex>* lock) {
+bool Connection::next_message(wire::OutgoingMessage& message, std::unique_lock<std::mutex>* lock) {
   for (;;) {
     if (!sender_) {
       std::optional<OutgoingFrame> frame = exchange_.next();
@@ -147,9 +163,9 @@ bool Connection::next_message(v1::DenoiseRequest& message, std::unique_lock<std:
 /// Writes the prepared message, if there is one and none is being written.
 void Connection::start_write() {
   if (!has_prepared_ || writing_ || ended_) return;
-  request_.Swap(&prepared_);
+  request_.Swap(&prepared_.bytes);
   has_prepared_ = false;
-  if (request_.has_plane_chunk()) exchange_.count(request_.plane_chunk().data().size(), 0);
+  exchange_.count(prepared_.plane_bytes, 0);
   writing_ = true;
   StartWrite(&request_);
 }

@@ -6,13 +6,14 @@
 #include <thread>
 
 #include <grpcpp/client_context.h>
+#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/support/client_callback.h>
 #include <holdfast/client.h>
 
 #include "client/sdk/exchange.h"
 #include "client/sdk/frame_sender.h"
 #include "client/sdk/result_assembler.h"
-#include "holdfast/v1/denoise_service.grpc.pb.h"
+#include "holdfast/v1/denoise_service.pb.h"
 
 namespace holdfast::client {
 
@@ -26,7 +27,7 @@ namespace holdfast::client {
 /// that neither gRPC nor the user's thread waits for a codec. Profile `exact`, which only copies,
 /// needs none: its messages are made where they are written. Results are decoded where they come
 /// in: that is several times cheaper.
-class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::DenoiseResponse> {
+class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   /// What the stream has to know about its session.
   struct Config {
@@ -36,8 +37,7 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   };
 
   /// Starts the stream.
-  Connection(v1::DenoiseService::Stub& stub, Exchange& exchange, Config config,
-             const v1::Hello& hello);
+  Connection(grpc::GenericStub& stub, Exchange& exchange, Config config, const v1::Hello& hello);
   /// Cancels the stream if it is open, and waits for its end.
   ~Connection() override;
 
@@ -56,9 +56,10 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
 
  private:
   // All of these are called with the mutex held.
+  void handle_message();
   void handle_response();
   void write_on();
-  bool next_message(v1::DenoiseRequest& message, std::unique_lock<std::mutex>* lock);
+  bool next_message(wire::OutgoingMessage& message, std::unique_lock<std::mutex>* lock);
   void start_write();
   void end_writes();
 
@@ -72,8 +73,9 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
   PlaneWriter writer_;                 ///< of the sender
   std::optional<FrameSender> sender_;  ///< of the encoding thread, if there is one
   ResultAssembler assembler_;
-  v1::DenoiseRequest request_;
-  v1::DenoiseResponse response_;
+  grpc::ByteBuffer request_, received_;
+  wire::ChunkReader chunks_;
+  v1::DenoiseResponse response_;  ///< what was received, unless it is a chunk
   bool welcome_ = false, writing_ = false, writes_done_ = false;
   bool ended_ = false;                  ///< no more reads or writes may be started
   std::optional<grpc::Status> status_;  ///< after OnDone
@@ -81,7 +83,7 @@ class Connection final : public grpc::ClientBidiReactor<v1::DenoiseRequest, v1::
 
   // Of the encoding thread.
   std::condition_variable wake_;
-  v1::DenoiseRequest prepared_;
+  wire::OutgoingMessage prepared_;
   bool has_prepared_ = false;
   bool woken_ = false;  ///< there may be something to encode
   std::thread encoder_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "client/sdk/exchange.h"
-#include "holdfast/v1/denoise_service.pb.h"
+#include "proto/chunk_writer.h"
 #include "proto/wire_profile.h"
 
 namespace holdfast::client {
@@ -13,7 +13,7 @@ namespace holdfast::client {
 /// How a session writes its planes, with memory that its frames share.
 struct PlaneWriter {
   const wire::WireProfile* profile = &wire::exact_profile();
-  wire::PlaneCoder coder;
+  wire::ChunkWriter chunks;
 };
 
 /// Turns one frame into messages: FrameBegin, the chunks of each plane, FrameEnd.
@@ -22,8 +22,9 @@ class FrameSender {
   FrameSender(OutgoingFrame frame, const std::vector<PlaneId>& planes, PlaneWriter& writer)
       : out_(std::move(frame)), planes_(planes), writer_(writer) {}
 
-  /// Writes the next message to `request`; false if there is none left.
-  bool next(v1::DenoiseRequest& request);
+  /// Makes the next message, which may refer to the frame's planes and holds the frame until it is
+  /// sent; false if there is none left.
+  bool next(wire::OutgoingMessage& message);
 
  private:
   const OutgoingFrame out_;

@@ -36,22 +36,23 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSize of, PlaneSe
   return results_.empty();
 }
 
-bool ResultAssembler::add(const v1::PlaneChunk& chunk) {
+bool ResultAssembler::add(const wire::ChunkView& chunk) {
+  const auto& [number, offset, last, plain_bytes] = chunk.fields;
   require(output_.has_value(), "a chunk came outside an answer");
-  require(chunk.plane() == plane_ && chunk.offset() == received_,
+  require(number == plane_ && offset == received_,
           "chunks must come in the order of the planes, without gaps");
   Plane& plane = *output_->planes.find(results_[plane_]);
   const wire::PlaneCoding coding = codings_[plane_];
   const bool coded = coding.codec != wire::Codec::kNone;
   const std::uint64_t size = wire::plane_bytes(plane, coding.format);
-  const std::uint64_t bytes = coded ? chunk.plain_bytes() : chunk.data().size();
+  const std::uint64_t bytes = coded ? plain_bytes : chunk.data_bytes;
   require(bytes > 0 && bytes % wire::element_bytes(coding.format) == 0 &&
               bytes <= wire::kMaxChunkBytes && bytes <= size - received_,
           "a chunk must lie within its plane");
-  require(coder_.decode(plane, coding, received_, bytes, chunk.data()),
+  require(coder_.decode(plane, coding, received_, bytes, chunk.data),
           "a chunk must be what its codec makes");
   received_ += bytes;
-  require(chunk.last() == (received_ == size), "the last chunk must end its plane");
+  require(last == (received_ == size), "the last chunk must end its plane");
   if (received_ < size) return false;
   received_ = 0;
   return ++plane_ == results_.size();

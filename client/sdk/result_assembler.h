@@ -7,6 +7,7 @@
 
 #include "core/frame/plane_size.h"
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/chunk_message.h"
 #include "proto/plane_coder.h"
 
 namespace holdfast::client {
@@ -21,7 +22,7 @@ class ResultAssembler {
   /// take. True if the answer is complete.
   bool begin(const v1::FrameResult& result, PlaneSize size, PlaneSet&& reuse);
   /// Adds a piece; true if the answer is complete.
-  bool add(const v1::PlaneChunk& chunk);
+  bool add(const wire::ChunkView& chunk);
   /// The complete answer.
   FrameOutput take();
 

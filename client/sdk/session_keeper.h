@@ -51,7 +51,7 @@ class SessionKeeper {
   Exchange& exchange_;
   const std::shared_ptr<grpc::Channel> channel_;
   v1::SessionService::Stub sessions_;
-  v1::DenoiseService::Stub denoise_;
+  grpc::GenericStub denoise_;
   v1::CreateSessionResponse session_;  ///< as it was first made: what the user is told
   std::string id_, token_;             ///< of the present one
   std::vector<PlaneId> results_;

@@ -176,7 +176,6 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     input.timer.end("vectors", vectors_traffic());
   }
   blend(input, follows, scratch);
-  HistoryRoom& histories = room(scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
   HistoryRoom& histories = room(scratch);

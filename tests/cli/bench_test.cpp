@@ -80,11 +80,26 @@ TEST_F(Bench, TimesOneSignalUnderSvgf) {
   EXPECT_NE(text.find("needs a scene with indirect light or reflections"), std::string::npos);
 }
 
+TEST_F(Bench, MovesRepeatedFramesOverBothLinksBesidePlainSockets) {
+  const auto json = bench({"--transport", "--rounds", "1", "--size", "100x50"});
+  EXPECT_EQ(json["up_bytes"], 32 * 100 * 50);
+  EXPECT_EQ(json["frames"], 2);
+  ASSERT_EQ(json["links"].size(), 2u);
+  EXPECT_EQ(json["links"][0]["link"], "tcp");
+  EXPECT_EQ(json["links"][1]["link"], "unix");
+  for (const auto& link : json["links"])
+    for (const auto& [key, value] : link.items())
+      if (key != "link") {
+        EXPECT_GT(value.get<double>(), 0) << key;
+      }
+}
+
 TEST_F(Bench, RefusesAnUnknownRecipeOrSize) {
   EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--recipes", "none"}), 2);
   EXPECT_NE(text.find("recipe must be one of"), std::string::npos) << text;
   EXPECT_EQ(holdfast({"bench", "--size", "wide"}), 2);
   EXPECT_EQ(holdfast({"bench", "--frames", "0"}), 2);
+  EXPECT_EQ(holdfast({"bench", "--transport", "--wire", "none"}), 2);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class CodedFrame : public ::testing::TestWithParam<const char*> {
   std::string assemble() {
     for (const v1::DenoiseRequest& message : messages) {
       if (message.has_frame_begin()) assembler.begin(message.frame_begin(), slot);
-      if (message.has_plane_chunk()) assembler.add(message.plane_chunk());
+      if (message.has_plane_chunk()) assembler.add(wire::view_of(message.plane_chunk()));
       if (message.has_frame_end()) assembler.end(message.frame_end());
     }
     return slot.error ? slot.error->message() : "";
@@ -162,7 +162,7 @@ TEST(CodedFrames, IdsBeyondAByteTravelWiderAndWhole) {
     const auto messages = test::RawStream::messages(frame, config.denoiser, "compact");
     for (const auto& message : messages) {
       if (message.has_frame_begin()) assembler.begin(message.frame_begin(), slot);
-      if (message.has_plane_chunk()) assembler.add(message.plane_chunk());
+      if (message.has_plane_chunk()) assembler.add(wire::view_of(message.plane_chunk()));
       if (message.has_frame_end()) assembler.end(message.frame_end());
     }
     ASSERT_FALSE(slot.error) << slot.error->message();

@@ -24,10 +24,10 @@ class CodedResults : public ::testing::TestWithParam<const char*> {
     answer->report =
         Denoiser(config.denoiser).filter(test::small_frame(config.denoiser, 0), answer->results);
     slot.answer = answer;
-    wire::PlaneCoder coder;
-    server::ResultSender sender(slot, config, coder);
-    v1::DenoiseResponse response;
-    while (sender.next(response)) messages.push_back(response);
+    wire::ChunkWriter chunks;
+    server::ResultSender sender(slot, config, chunks);
+    wire::OutgoingMessage message;
+    while (sender.next(message)) wire::parse_message(message.bytes, messages.emplace_back());
   }
 
   v1::FramePlane& announced(int plane) {
@@ -39,7 +39,7 @@ class CodedResults : public ::testing::TestWithParam<const char*> {
     ResultAssembler assembler(config.results);
     bool whole = assembler.begin(messages[0].frame_result(), {kWidth, kHeight}, {});
     for (std::size_t i = 1; i < messages.size(); ++i)
-      whole = assembler.add(messages[i].plane_chunk());
+      whole = assembler.add(wire::view_of(messages[i].plane_chunk()));
     EXPECT_TRUE(whole);
     return assembler.take();
   }

@@ -19,8 +19,8 @@ class FrameAssembly : public ::testing::Test {
     frame = std::make_shared<const Frame>(test::small_frame(config.denoiser, 4));
     client::PlaneWriter writer;
     client::FrameSender sender({frame, 0, {}, {}}, config.denoiser.planes, writer);
-    v1::DenoiseRequest message;
-    while (sender.next(message)) messages.push_back(message);
+    wire::OutgoingMessage message;
+    while (sender.next(message)) wire::parse_message(message.bytes, messages.emplace_back());
   }
 
   v1::FrameBegin& begin() { return *messages.front().mutable_frame_begin(); }
@@ -32,7 +32,7 @@ class FrameAssembly : public ::testing::Test {
     FrameAssembler assembler(config);
     for (const v1::DenoiseRequest& message : messages) {
       if (message.has_frame_begin()) assembler.begin(message.frame_begin(), slot);
-      if (message.has_plane_chunk()) assembler.add(message.plane_chunk());
+      if (message.has_plane_chunk()) assembler.add(wire::view_of(message.plane_chunk()));
       if (message.has_frame_end()) assembler.end(message.frame_end());
     }
     if (assembler.open()) assembler.abandon("the end of the stream");

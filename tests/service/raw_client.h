@@ -101,8 +101,8 @@ class RawStream {
     std::vector<v1::DenoiseRequest> out;
     client::PlaneWriter writer{wire::find_profile(wire), {}};
     client::FrameSender sender({{&frame, [](const Frame*) {}}, 0, {}, {}}, config.planes, writer);
-    v1::DenoiseRequest message;
-    while (sender.next(message)) out.push_back(message);
+    wire::OutgoingMessage message;
+    while (sender.next(message)) wire::parse_message(message.bytes, out.emplace_back());
     return out;
   }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/error.h"
+#include "server/transport_memory.h"
 #include "tests/service/test_frames.h"
 
 namespace holdfast::server {
@@ -149,6 +150,18 @@ TEST(SessionTable, RefusesWhatExceedsTheMemoryOfAllSessions) {
   EXPECT_GT(table.total_bytes(), 0u);
   EXPECT_EQ(refusal_of([&] { table.create(config_of(1000, 1000)); }), Refusal::kLimit);
   EXPECT_EQ(table.bytes(*first), table.total_bytes()) << "a refused session leaves nothing behind";
+}
+
+TEST(TransportMemory, IsThatOfPiecesAndOfCodecsWhereThereAreAny) {
+  SessionConfig config;
+  config.denoiser = test::small_config(8, 8);
+  config.results = result_planes(config.denoiser);
+  EXPECT_LT(transport_bytes(config), 300'000u) << "a small session has small pieces";
+  config.denoiser.width = config.denoiser.height = 2000;
+  const std::size_t exact = transport_bytes(config);
+  EXPECT_EQ(exact, (5u << 20) + (1u << 18)) << "three pieces in, two out";
+  config.wire = "compact";
+  EXPECT_EQ(transport_bytes(config) - exact, (2u << 20) + (3u << 19)) << "two more, and zstd";
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <list>
+
 #include "server/stream_deadlines.h"
 #include "tests/service/raw_client.h"
 #include "tests/service/served.h"
@@ -98,14 +100,45 @@ TEST_F(SlowClient, ThatFillsThePlacesOfAllStreamsHoldsThemNoLongerThanTheLimit) 
   start();
   const auto silent = client(), honest = client();
   RawStream first(*silent), second(*silent);
+  std::this_thread::sleep_for(300ms);  // streams reach the server when they please
   {
     RawStream third(*honest);
     EXPECT_EQ(third.finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   }
   end_of(first);
   end_of(second);
-  RawStream third(*honest);
-  EXPECT_EQ(third.attach().credits(), 3u);
+  // A place is free a moment after the end of its stream is known to the client.
+  std::uint32_t credits = 0;
+  for (int i = 0; i < 50 && credits == 0; ++i) {
+    std::this_thread::sleep_for(20ms);
+    RawStream third(*honest);
+    credits = third.attach().credits();
+    third.cancel();
+  }
+  EXPECT_EQ(credits, 3u);
+}
+
+TEST_F(SlowClient, ThatOpensManyStreamsInSilenceIsRefusedMoreAndOthersAreServed) {
+  config.max_waiting_per_address = 3;
+  start();
+  const auto one = client();
+  std::list<RawStream> silent;
+  for (int i = 0; i < 3; ++i) silent.emplace_back(*one);
+  std::this_thread::sleep_for(500ms);
+  const auto deadline = std::chrono::steady_clock::now() + 30s;
+  bool full = false;
+  while (!full && std::chrono::steady_clock::now() < deadline) {
+    RawStream stream(*one);
+    stream.hello("none", "none");
+    stream.read();
+    full = stream.finish().error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  }
+  ASSERT_TRUE(full);
+  EXPECT_GT(silent.front().attach().credits(), 0u) << "one that speaks at last";
+  RawStream after(*one);
+  EXPECT_GT(after.attach().credits(), 0u) << "in the place that became free";
+  for (RawStream& stream : silent) stream.cancel();
+  after.cancel();
 }
 
 TEST_F(SlowClient, ThatOnlyConnectsIsHungUpOn) {

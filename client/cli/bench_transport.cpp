@@ -1,0 +1,157 @@
+#include "client/cli/bench_transport.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <holdfast/client.h>
+
+#include "client/cli/raw_echo.h"
+#include "client/cli/server_child.h"
+
+namespace holdfast::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A wall before a camera, with 32 bytes a pixel: depth, normal, light and its visibility, which is
+/// noise. The filter sees it once.
+std::shared_ptr<const Frame> wall(int width, int height) {
+  auto frame = std::make_shared<Frame>();
+  frame->camera.view_from_world = glm::dmat4(1.0);
+  frame->camera.clip_from_view =
+      glm::perspective(0.8, static_cast<double>(width) / height, 0.1, 100.0);
+  frame->lights[0] = glm::translate(glm::dmat4(1.0), {0.0, 0.0, 2.0});
+  const auto add = [&](PlaneId id, auto value) {
+    Plane& plane = frame->planes.add(id, width, height);
+    for (int c = 0; c < plane.channels(); ++c)
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) plane.channel(c).at(x, y) = value(c);
+  };
+  std::uint32_t state = 1;
+  add({PlaneKind::kDepth, {}}, [](int) { return 5.0f; });
+  add({PlaneKind::kNormal, {}}, [](int c) { return c == 2 ? 1.0f : 0.0f; });
+  add(PlaneId::of_light(PlaneKind::kUnshadowed, 0), [](int) { return 0.5f; });
+  add(PlaneId::of_light(PlaneKind::kVisibility, 0), [&](int) {
+    state = state * 1664525u + 1013904223u;
+    return state >> 31 ? 1.0f : 0.0f;
+  });
+  return frame;
+}
+
+/// A session over one link, which sends one frame again and again.
+class RepeatedFrame {
+ public:
+  RepeatedFrame(bool tcp, const ServerChild& server, const TransportOptions& options)
+      : link_(tcp ? "tcp" : "unix"),
+        server_(server),
+        frame_(wall(options.width, options.height)),
+        session_(session_options(options)),
+        resident_before_(server.resident_bytes()) {
+    run(1 + kWarmUp);
+    const client::Traffic one = session_.traffic();
+    up_ = one.sent / (1 + kWarmUp);
+    down_ = one.received / (1 + kWarmUp);
+  }
+
+  std::size_t up() const { return up_; }
+  std::size_t down() const { return down_; }
+  int credits() const { return session_.credits(); }
+  const char* link() const { return link_; }
+
+  TransportCost measure(int frames) {
+    const double cpu = own_cpu_seconds() + server_.cpu_seconds();
+    const auto start = Clock::now();
+    run(frames);
+    return {std::chrono::duration<double>(Clock::now() - start).count(),
+            own_cpu_seconds() + server_.cpu_seconds() - cpu};
+  }
+  /// What the server has needed for frames, in frames.
+  double memory_frames() const {
+    return static_cast<double>(server_.peak_bytes() - resident_before_) /
+           static_cast<double>(up_ + down_);
+  }
+
+ private:
+  static constexpr int kWarmUp = 4;  // repetitions, after the one that is filtered
+
+  client::SessionOptions session_options(const TransportOptions& options) const {
+    client::SessionOptions out;
+    out.address = server_.address();
+    out.width = options.width;
+    out.height = options.height;
+    out.wire = options.wire;
+    Light light;
+    light.shape = LightShape::kRectangle;
+    light.width = 1.5;
+    light.height = 0.5;
+    out.lights = {light};
+    for (const Plane& plane : frame_->planes) out.planes.push_back(plane.id());
+    return out;
+  }
+
+  void run(int frames) {
+    for (int sent = 0, received = 0; received < frames;) {
+      if (sent < frames && session_.try_submit(frame_)) {
+        ++sent;
+        continue;
+      }
+      client::FrameOutput output = *session_.receive();
+      if (output.error) throw std::runtime_error(output.error->message);
+      if (output.repeated != (answered_++ > 0))
+        throw std::runtime_error("the server did not answer a repeated frame from memory");
+      session_.recycle(std::move(output.planes));
+      ++received;
+    }
+  }
+
+  const char* const link_;
+  const ServerChild& server_;
+  const std::shared_ptr<const Frame> frame_;
+  client::Session session_;
+  const std::size_t resident_before_;
+  std::size_t up_ = 0, down_ = 0;
+  int answered_ = 0;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options) {
+  const double gb = 1e-9 * static_cast<double>(session.up() + session.down()) * options.frames;
+  std::vector<double> raw_rate, rate, ratio, raw_cpu, cpu;
+  const bool tcp = std::string(session.link()) == "tcp";
+  for (int i = 0; i < options.rounds; ++i) {
+    const TransportCost raw =
+        raw_echo(tcp, session.up(), session.down(), options.frames, session.credits());
+    const TransportCost own = session.measure(options.frames);
+    raw_rate.push_back(gb / raw.seconds);
+    rate.push_back(gb / own.seconds);
+    ratio.push_back(raw.seconds / own.seconds);
+    raw_cpu.push_back(raw.cpu_seconds / gb);
+    cpu.push_back(own.cpu_seconds / gb);
+  }
+  return {session.link(),  median(raw_rate), median(rate),           median(ratio),
+          median(raw_cpu), median(cpu),      session.memory_frames()};
+}
+
+}  // namespace
+
+TransportResult run_transport_bench(const TransportOptions& options) {
+  const ServerChild tcp_server(true), unix_server(false);  // before gRPC has threads here
+  TransportResult result;
+  result.options = options;
+  for (const bool tcp : {true, false}) {
+    RepeatedFrame session(tcp, tcp ? tcp_server : unix_server, options);
+    result.up_bytes = session.up();
+    result.down_bytes = session.down();
+    result.links.push_back(measure_link(session, options));
+  }
+  return result;
+}
+
+}  // namespace holdfast::cli

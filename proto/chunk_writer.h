@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+
+#include "proto/chunk_message.h"
+#include "proto/plane_coder.h"
+
+namespace holdfast::wire {
+
+/// A message on its way out.
+struct OutgoingMessage {
+  grpc::ByteBuffer bytes;
+  std::size_t plane_bytes = 0;  ///< data of a chunk in it
+};
+
+/// Turns planes into messages with a PlaneChunk each. A plane that lies in memory as it lies on the
+/// wire (full format, no codec, rows without padding: widths that are multiples of 16) is not
+/// copied: messages refer to it. Otherwise the piece is made in a buffer, which is used again once
+/// its message is sent. One thread at a time; messages may be sent by others and outlive it.
+class ChunkWriter {
+ public:
+  ChunkWriter();
+
+  /// Makes `message` the chunk of `plane` that begins at `offset` of its bytes. `number` of the
+  /// plane in its session. `owner` keeps the plane, which must not change, until the message is
+  /// sent. Returns the offset of the next chunk, 0 if this is the last.
+  std::size_t write(const Plane& plane, PlaneCoding coding, std::uint32_t number,
+                    std::size_t offset, const std::shared_ptr<const void>& owner,
+                    OutgoingMessage& message);
+
+  /// Buffers that are not in use are kept, but not more: the one made and the one being sent.
+  static constexpr std::size_t kKept = 2;
+
+ private:
+  class Buffers;
+
+  PlaneCoder coder_;
+  std::shared_ptr<Buffers> buffers_;
+};
+
+}  // namespace holdfast::wire

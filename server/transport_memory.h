@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+
+#include "server/session.h"
+
+namespace holdfast::server {
+
+/// Scratch of a session's stream, at most, bytes: pieces of planes that are put together, decoded
+/// or encoded, and the memory of codecs. Input may be coded in any session; results are where the
+/// session's wire profile says so.
+std::size_t transport_bytes(const SessionConfig& config);
+
+}  // namespace holdfast::server
