@@ -120,7 +120,8 @@ void Scratch::grow_rooms(int width, int height, const Plan& plan, const Plan::Gr
   if (grid.any_radiance) provide(radiance, 3);
   if (!grid.any_cones) return;
   ConeRoom other(width, height, plan.recipe.indirect_basis, plan.history_format);
-  if (other.bytes() != cones.bytes()) cones = std::move(other);
+  if (other.kept.count() != cones.kept.count() || other.updated.count() != cones.updated.count())
+    cones = std::move(other);
 }
 
 void Scratch::trim(const Plan& plan, const Plan::Grid& grid) noexcept {
