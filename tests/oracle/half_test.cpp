@@ -30,7 +30,7 @@ class Half : public testing::TestWithParam<std::string> {
 TEST_P(Half, AgreesWithTheOracle) { compare(64, 48, 6, {"indirect", "glossy"}); }
 
 TEST_P(Half, AgreesWithTheOracleAtOddAndTinySizes) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 6}, {3, 2}, {17, 9}, {133, 5}})
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 6}, {3, 2}, {17, 9}, {67, 5}})
     compare(width, height, 3, {"indirect", "glossy"});
 }
 
@@ -97,8 +97,8 @@ TEST(HalfVariants, TheOracleAtHalfResolutionIsNotTheOneAtFull) {
   for (const OracleErrors& errors : oracle_errors(half, full)) {
     const bool halved =
         errors.plane.kind == PlaneKind::kIndirect || errors.plane.kind == PlaneKind::kGlossy;
-    if (halved) EXPECT_FALSE(errors.within_budget()) << plane_name(errors.plane);
-    if (errors.plane.kind == PlaneKind::kVisibility) EXPECT_EQ(errors.largest, 0);
+    EXPECT_FALSE(halved && errors.within_budget()) << plane_name(errors.plane);
+    EXPECT_FALSE(errors.plane.kind == PlaneKind::kVisibility && errors.largest > 0);
   }
 }
 
