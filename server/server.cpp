@@ -157,8 +157,8 @@ class Server::Impl {
                                  milliseconds(state_.config.hello_timeout));
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinPingMs);
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
-    // The probe finds the window of a long link; a unix socket has none to find.
-    if (listen.starts_with("unix:")) {
+    // The probe finds the window of a long link; within a machine it finds far too large a one.
+    if (is_local_address(listen)) {
       builder.AddChannelArgument(GRPC_ARG_HTTP2_BDP_PROBE, 0);
       builder.AddChannelArgument(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, wire::kMaxMessageBytes);
     }

@@ -68,6 +68,10 @@ void add_bench(CLI::App& app) {
                   "Of the transport, --frames frames each")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      .add_option("--delay-ms", args->transport_options.delay_ms,
+                  "Measure the transport also over a link with that delay in each direction")
+      ->check(CLI::Range(0.0, 1000.0));
   command.add_option("--wire", args->transport_options.wire, "Wire profile of the transport")
       ->capture_default_str();
   command.add_flag("--quiet", args->quiet, "No table");

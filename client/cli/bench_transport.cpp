@@ -8,6 +8,7 @@
 #include <holdfast/client.h>
 
 #include "client/cli/raw_echo.h"
+#include "client/cli/relay.h"
 #include "client/cli/server_child.h"
 
 namespace holdfast::cli {
@@ -43,9 +44,10 @@ std::shared_ptr<const Frame> wall(int width, int height) {
 /// A session over one link, which sends one frame again and again.
 class RepeatedFrame {
  public:
-  RepeatedFrame(bool tcp, const ServerChild& server, const TransportOptions& options)
-      : link_(tcp ? "tcp" : "unix"),
+  RepeatedFrame(const std::string& link, const ServerChild& server, const TransportOptions& options)
+      : link_(link),
         server_(server),
+        relay_(relay(options)),
         frame_(wall(options.width, options.height)),
         session_(session_options(options)),
         resident_before_(server.resident_bytes()) {
@@ -58,7 +60,7 @@ class RepeatedFrame {
   std::size_t up() const { return up_; }
   std::size_t down() const { return down_; }
   int credits() const { return session_.credits(); }
-  const char* link() const { return link_; }
+  const std::string& link() const { return link_; }
 
   TransportCost measure(int frames) {
     const double cpu = own_cpu_seconds() + server_.cpu_seconds();
@@ -76,9 +78,14 @@ class RepeatedFrame {
  private:
   static constexpr int kWarmUp = 4;  // repetitions, after the one that is filtered
 
+  std::unique_ptr<Relay> relay(const TransportOptions& options) const {
+    if (link_ != "delayed") return nullptr;
+    return std::make_unique<Relay>(server_.address(), Link{options.delay_ms, 0});
+  }
+
   client::SessionOptions session_options(const TransportOptions& options) const {
     client::SessionOptions out;
-    out.address = server_.address();
+    out.address = relay_ ? relay_->address() : server_.address();
     out.width = options.width;
     out.height = options.height;
     out.wire = options.wire;
@@ -106,8 +113,9 @@ class RepeatedFrame {
     }
   }
 
-  const char* const link_;
+  const std::string link_;
   const ServerChild& server_;
+  const std::unique_ptr<Relay> relay_;
   const std::shared_ptr<const Frame> frame_;
   client::Session session_;
   const std::size_t resident_before_;
@@ -124,10 +132,9 @@ double median(std::vector<double> values) {
 LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options) {
   const double gb = 1e-9 * static_cast<double>(session.up() + session.down()) * options.frames;
   std::vector<double> raw_rate, rate, ratio, raw_cpu, cpu;
-  const bool tcp = std::string(session.link()) == "tcp";
   for (int i = 0; i < options.rounds; ++i) {
-    const TransportCost raw =
-        raw_echo(tcp, session.up(), session.down(), options.frames, session.credits());
+    const TransportCost raw = raw_echo(session.link() != "unix", session.up(), session.down(),
+                                       options.frames, session.credits());
     const TransportCost own = session.measure(options.frames);
     raw_rate.push_back(gb / raw.seconds);
     rate.push_back(gb / own.seconds);
@@ -142,15 +149,19 @@ LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options)
 }  // namespace
 
 TransportResult run_transport_bench(const TransportOptions& options) {
-  const ServerChild tcp_server(true), unix_server(false);  // before gRPC has threads here
+  // Before gRPC has threads here.
+  const ServerChild tcp_server(true), unix_server(false), delayed_server(true);
   TransportResult result;
   result.options = options;
-  for (const bool tcp : {true, false}) {
-    RepeatedFrame session(tcp, tcp ? tcp_server : unix_server, options);
+  const auto measure = [&](const char* link, const ServerChild& server) {
+    RepeatedFrame session(link, server, options);
     result.up_bytes = session.up();
     result.down_bytes = session.down();
     result.links.push_back(measure_link(session, options));
-  }
+  };
+  measure("tcp", tcp_server);
+  measure("unix", unix_server);
+  if (options.delay_ms > 0) measure("delayed", delayed_server);
   return result;
 }
 

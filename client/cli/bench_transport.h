@@ -14,11 +14,12 @@ struct TransportOptions {
   int frames = 24;                 ///< timed frames of a round, >= 1
   int rounds = 5;                  ///< >= 1; medians are over them
   std::string wire = "exact";
+  double delay_ms = 0;  ///< > 0: also over TCP with that delay in each direction, by a relay
 };
 
 /// One kind of link, as medians over rounds. Bytes are those of planes, both directions together.
 struct LinkResult {
-  std::string link;  ///< "tcp" or "unix"
+  std::string link;  ///< "tcp", "unix", or "delayed", whose plain socket has no delay
   double raw_gb_per_s = 0, session_gb_per_s = 0;
   double ratio = 0;                                       ///< session over raw, of the same round
   double raw_cpu_s_per_gb = 0, session_cpu_s_per_gb = 0;  ///< both ends

@@ -60,6 +60,11 @@ void check_token(const std::string& token) {
       throw InputError("bearer token", "must be of visible ASCII characters", "with others");
 }
 
+bool is_local(const std::string& address) {
+  return address.starts_with("unix:") || address.starts_with("127.") ||
+         address.starts_with("localhost:") || address.starts_with("[::1]:");
+}
+
 }  // namespace
 
 std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
@@ -75,8 +80,8 @@ std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
   args.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   args.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, kFirstBackoffMs);
   args.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, kLongestBackoffMs);
-  // The probe finds the window of a long link; a unix socket has none to find.
-  if (address.starts_with("unix:")) {
+  // The probe finds the window of a long link; within a machine it finds far too large a one.
+  if (is_local(address)) {
     args.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     args.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, wire::kMaxMessageBytes);
   }

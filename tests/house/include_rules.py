@@ -26,7 +26,7 @@ CORE_LAYERS = {
 
 CORE_LIBRARIES = ("glm/", "tbb/", "oneapi/tbb/")
 
-PROTO_KNOWS = ("proto/", "core/frame/", "core/kernels/variants.h", "core/kernels/math.h")
+PROTO_KNOWS = ("proto/", "holdfast/v1/", "core/frame/", "core/kernels/variants.h", "core/kernels/math.h")
 
 STANDARD_HEADERS = set(
     """

@@ -81,6 +81,7 @@ class Includes(RulesTest):
         self.write("core/kernels/parallel.h")
         self.write("core/denoiser/denoiser.h")
         self.write("server/session.h")
+        self.allowed("proto/chunk.cpp", '#include "holdfast/v1/denoise_service.pb.h"')
         self.allowed("proto/bytes.h", '#include "core/frame/plane.h"')
         self.allowed("proto/rows.cpp", '#include "core/kernels/variants.h"')
         self.refused("proto/rows.cpp", '#include "core/kernels/parallel.h"', "only core/frame/")

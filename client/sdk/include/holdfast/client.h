@@ -150,7 +150,8 @@ class Session {
 
   /// Sends a frame; blocks while as many frames are in flight as the server gave credits. The
   /// planes are read until the session lets go of the pointer, which is rewarm_frames answers after
-  /// the frame's own: they must not change before. Throws InputError if
+  /// the frame's own, or once the connection is gone: they must not change before. A pointer that
+  /// owns nothing is for frames that outlive the session and are all answered. Throws InputError if
   /// the planes are not those of the session; the session is then as before. Throws ConnectionError
   /// or RefusedError if the stream has ended.
   void submit(std::shared_ptr<const Frame> frame);
