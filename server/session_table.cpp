@@ -25,6 +25,10 @@ SessionTable::SessionTable(SessionLimits limits, Clock clock)
 std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::string& owner) {
   const std::string id = random_hex(kIdBytes);
   expire();
+  {
+    const std::lock_guard lock(mutex_);
+    check_count(owner);  // before anything is made: a flood of refusals must be cheap
+  }
   const std::size_t frames =
       frame_bytes(config.denoiser, limits_.credits) + transport_bytes(config);
   admit(id, needed_bytes(config), owner);
@@ -57,7 +61,11 @@ void SessionTable::check_bytes(std::size_t session_bytes, std::size_t total_byte
 }
 
 /// Called with the mutex held.
-void SessionTable::check_owner(const std::string& owner) const {
+void SessionTable::check_count(const std::string& owner) const {
+  if (entries_.size() >= limits_.max_sessions)
+    throw RefusedError(
+        "the server has " + std::to_string(entries_.size()) + " sessions, the most it allows",
+        {"max-sessions", limits_.linger});
   const std::size_t most = limits_.max_sessions_per_token;
   if (most == 0 || owner.empty()) return;
   const auto of_owner = [&](const auto& entry) { return entry.second.owner == owner; };
@@ -69,11 +77,7 @@ void SessionTable::check_owner(const std::string& owner) const {
 
 void SessionTable::admit(const std::string& id, std::size_t bytes, const std::string& owner) {
   const std::lock_guard lock(mutex_);
-  check_owner(owner);
-  if (entries_.size() >= limits_.max_sessions)
-    throw RefusedError(
-        "the server has " + std::to_string(entries_.size()) + " sessions, the most it allows",
-        {"max-sessions", limits_.linger});
+  check_count(owner);
   check_bytes(bytes, total_bytes_ + bytes);
   const TimePoint now = clock_();
   entries_.emplace(id, Entry{nullptr, bytes, 0, SessionLife(now), owner,

@@ -88,7 +88,7 @@ class SessionTable {
   Entry& live_entry(const std::string& id);
   const Entry& checked(const std::string& id, const std::string& token) const;
   void admit(const std::string& id, std::size_t bytes, const std::string& owner);
-  void check_owner(const std::string& owner) const;
+  void check_count(const std::string& owner) const;
   void settle(const std::string& id, std::size_t bytes);
   void end_reservation(const Session& session, std::size_t bytes);
   std::size_t needed_bytes(const SessionConfig& session) const;

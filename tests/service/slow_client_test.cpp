@@ -95,12 +95,12 @@ TEST_F(SlowClient, ThatSaysNothingLosesItsStreamAndNotItsSession) {
 }
 
 TEST_F(SlowClient, ThatFillsThePlacesOfAllStreamsHoldsThemNoLongerThanTheLimit) {
-  config.hello_timeout = 1500ms;
+  config.hello_timeout = 5000ms;
   config.max_streams = 2;
   start();
   const auto silent = client(), honest = client();
   RawStream first(*silent), second(*silent);
-  std::this_thread::sleep_for(300ms);  // streams reach the server when they please
+  std::this_thread::sleep_for(500ms);  // both are there, and have long to go
   {
     RawStream third(*honest);
     EXPECT_EQ(third.finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
