@@ -17,12 +17,11 @@ std::vector<Preset> make_presets() {
                     .kernel_radius = 1,
                     .indirect_basis = RadianceBasis::kIrradiance,
                     .half_indirect = true,
-                    .half_glossy = true};
+                    .half_glossy = true,
+                    .history = HistoryFormat::kPacked};
   const Preset balanced{.name = "balanced"};
-  const Preset accurate{.name = "accurate",
-                        .indirect_basis = RadianceBasis::kConesColour,
-                        .history = HistoryFormat::kFloat};
-  const Preset reference{.name = "reference", .history = HistoryFormat::kFloat, .oracle = true};
+  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
+  const Preset reference{.name = "reference", .oracle = true};
   return {fast, balanced, accurate, reference};
 }
 

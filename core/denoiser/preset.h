@@ -15,10 +15,10 @@ struct Preset {
   std::string name;
   int kernel_radius = 2;  ///< of the a-trous kernel: 1 (3x3 taps) or 2 (5x5)
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
-  bool half_indirect = false;  ///< indirect light is filtered at half resolution
-  bool half_glossy = false;    ///< reflections likewise
-  HistoryFormat history = HistoryFormat::kPacked;  ///< of recipes that keep one, but for those that
-                                                   ///< keep moments of the luminance, as floats
+  bool half_indirect = false;                     ///< indirect light is filtered at half resolution
+  bool half_glossy = false;                       ///< reflections likewise
+  HistoryFormat history = HistoryFormat::kFloat;  ///< of recipes that keep one, but for those that
+                                                  ///< keep moments of the luminance, as floats
   bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow
   int more_levels = 0;  ///< of the a-trous filter of radiance, beside the recipe's
 };

@@ -51,6 +51,12 @@ Means differences(const PlaneSet& a, const PlaneSet& b, PlaneId id) {
   return sums;
 }
 
+DenoiserConfig packed_config(int width = 37, int height = 29) {
+  DenoiserConfig config = config_of("balanced", width, height);
+  config.history = "f16";
+  return config;
+}
+
 double kept_bytes(DenoiserConfig config, const std::string& history) {
   config.history = history;
   return static_cast<double>(Denoiser(config).history_bytes()) / (config.width * config.height);
@@ -62,11 +68,12 @@ TEST(HistoryFormat, IsThePresetsUnlessItIsAskedFor) {
     config.history = history;
     return Plan::make(config).history_format;
   };
-  for (const char* preset : {"fast", "balanced"})
-    EXPECT_EQ(format(preset, ""), HistoryFormat::kPacked);
-  EXPECT_EQ(format("accurate", ""), HistoryFormat::kFloat);
-  EXPECT_EQ(format("accurate", "f16"), HistoryFormat::kPacked);
-  EXPECT_EQ(format("balanced", "f32"), HistoryFormat::kFloat);
+  EXPECT_EQ(format("fast", ""), HistoryFormat::kPacked);
+  for (const char* preset : {"balanced", "accurate"}) {
+    EXPECT_EQ(format(preset, ""), HistoryFormat::kFloat);
+    EXPECT_EQ(format(preset, "f16"), HistoryFormat::kPacked);
+  }
+  EXPECT_EQ(format("fast", "f32"), HistoryFormat::kFloat);
   DenoiserConfig config = config_of("balanced");
   config.history = "f8";
   test::expect_input_error([&] { Denoiser{config}; }, "history", "f16 or f32", "'f8'");
@@ -76,6 +83,7 @@ TEST(HistoryFormat, MomentsOfTheLuminanceStayFloats) {
   DenoiserConfig config = config_of("balanced");
   for (const char* recipe : {"svgf", "asvgf"}) {
     config.recipe = recipe;
+    config.history = "f16";
     EXPECT_EQ(Plan::make(config).history_format, HistoryFormat::kFloat);
   }
   config.recipe = "spatial";
@@ -104,7 +112,8 @@ TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
 }
 
 TEST(HistoryFormat, ThePlansTextSaysWhatIsKept) {
-  const std::string text = Denoiser(config_of("balanced", 64, 64)).plan_text();
+  const DenoiserConfig config = packed_config(64, 64);
+  const std::string text = Denoiser(config).plan_text();
   EXPECT_NE(text.find("kept of glossy as f16: 11."), std::string::npos) << text;
   EXPECT_NE(text.find("kept cones of indirect as f16: 14."), std::string::npos) << text;
   EXPECT_NE(text.find("all that is kept from frame to frame: "), std::string::npos) << text;
@@ -130,7 +139,7 @@ struct Errors {
 // Samples of mean 0.5, for longer than the history remembers: the mean of 64 would stand still
 // where a sample changes it by less than half a step of a half.
 TEST(HistoryFormat, AtRestErrorsAreThoseOfFloats) {
-  DenoiserConfig config = config_of("balanced", 18, 14);
+  DenoiserConfig config = packed_config(18, 14);
   // Cones ask for directions of cosine density, which these are not.
   std::erase(config.planes, PlaneId{PlaneKind::kIndirectDirection, {}});
   DenoiserConfig exact = config;
@@ -198,14 +207,14 @@ TEST(HistoryFormat, TheSameBitsOnAnyNumberOfThreads) {
   for (const int threads : {1, 4}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
-    results[threads == 1 ? 0 : 1] = last_of(config_of("balanced", 70, 40), 5);
+    results[threads == 1 ? 0 : 1] = last_of(packed_config(70, 40), 5);
   }
   EXPECT_TRUE(test::same_bits(results[0], results[1]));
 }
 
 TEST(HistoryFormat, InstructionSetsDifferByFewRoundings) {
   const test::IsaGuard guard;
-  const DenoiserConfig config = config_of("balanced");
+  const DenoiserConfig config = packed_config();
   select_isa(Isa::kScalar);
   const PlaneSet expected = last_of(config, 6);
   for (const Isa isa : available_isas()) {
@@ -220,7 +229,7 @@ TEST(HistoryFormat, InstructionSetsDifferByFewRoundings) {
 
 // Radiance has no scale that halves could not hold.
 TEST(HistoryFormat, RadianceBeyondTheGreatestHalfIsKeptAsWellAsAnyOther) {
-  const DenoiserConfig config = config_of("balanced");
+  const DenoiserConfig config = packed_config();
   const PlaneSet expected = last_of(config, 8);
   for (const int exponent : {-24, 20, 36}) {
     const float scale = std::ldexp(1.0f, exponent);

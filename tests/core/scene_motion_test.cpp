@@ -57,7 +57,9 @@ TEST(SceneMotion, RemembersOnlySoManyObjectsAndForgetsThoseListedLongestAgo) {
     objects[kFaithful] = glm::translate(glm::dmat4(1), {0.1 * t, 0.0, 0.0});
     advance(scene, frame_of(camera, objects));
     EXPECT_LE(scene.remembered_objects(), SceneMotion::kMostObjects);
-    if (t > 0) EXPECT_EQ(scene.slot_count(), 2) << "what is listed in every frame is known";
+    if (t > 0) {
+      EXPECT_EQ(scene.slot_count(), 2) << "what is listed in every frame is known";
+    }
   }
   EXPECT_GT(scene.remembered_objects(), SceneMotion::kMostObjects / 2);
   // The last frame's objects are known, so that they can move; the first one's are new again.
