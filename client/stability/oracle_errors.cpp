@@ -79,7 +79,7 @@ const OracleBudget& oracle_budget(PlaneKind kind) {
   static const OracleBudget history{"history", 2e-2, 1e-3, 6e-4};
   static const OracleBudget confidence{"confidence", 2e-2, 1e-3, 6e-4};
   // exp_nonpositive is off by 6e-6, and so are weights; means of 0 and 1 by less.
-  static const OracleBudget visibility{"visibility", 1e-3, 1e-3, 5e-5};
+  static const OracleBudget visibility{"visibility", 1e-3, 1e-3, 3e-5};
   // The same, the variances above, which say how far edges are seen (`svgf`, whose moments cancel),
   // and for `paper` another draw's place on the taps.
   static const OracleBudget radiance{"radiance", 3e-3, 1e-3, 1e-4};

@@ -208,7 +208,7 @@ class Denoiser::Impl {
       count_repairs(report, gradient,
                     load_gradients(frame.planes.at(gradient), kLargestRadiance, scratch.gradients));
     }
-    if (entry.component.kind == ComponentKind::kVisibility) {
+    if (entry.leaves_out_unlit) {
       const auto unshadowed = PlaneId::of_light(PlaneKind::kUnshadowed, entry.component.light);
       input.unshadowed = frame.planes.find(unshadowed);
       if (input.unshadowed == nullptr) input.unshadowed = shaded.find(unshadowed);

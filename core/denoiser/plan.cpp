@@ -125,6 +125,9 @@ Plan Plan::make(const DenoiserConfig& config) {
         recipe.gradient_levels > 0 && has(config, {PlaneKind::kGradient, entry.component});
     plan.any_gradients |= entry.gradients;
     entry.half = !entry.gradients && is_halved(plan.preset, entry.component.kind);
+    // Whoever follows shadows meets those places; the other recipes with history stay as published.
+    entry.leaves_out_unlit = entry.component.kind == ComponentKind::kVisibility &&
+                             (recipe.shadow != ShadowVectors::kNone || !plan.history);
     Grid& grid = entry.half ? plan.half : plan.full;
     grid.any = true;
     grid.any_radiance |= entry.component.kind != ComponentKind::kVisibility;

@@ -22,6 +22,7 @@ struct Plan {
                                   ///< directions
     bool gradients = false;       ///< the recipe asks for gradient samples and frames bring them
     bool half = false;            ///< filtered at half resolution
+    bool leaves_out_unlit = false;  ///< of a visibility: what its light does not reach, unlit.h
   };
   /// What the components of one resolution need together.
   struct Grid {

@@ -205,7 +205,7 @@ Image ComponentOracle::filter_lit(const FrameView& view, const PlaneSet& planes,
 
 /// 1 where the light reaches the surface; empty: not known.
 Image ComponentOracle::lit_of(const FrameView& view, const PlaneSet& planes) const {
-  if (!visibility_) return {};
+  if (!entry_.leaves_out_unlit) return {};
   const std::uint32_t id = entry_.component.light;
   const auto make = [&](const auto& value_at) {
     Image lit(view.now.width, view.now.height, 1);

@@ -41,7 +41,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
     EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
   }
   for (const char* name : {"reliable fast", "reliable balanced", "reliable accurate", "clamp fast",
-                           "reliable 3x3 cones half f16"})
+                           "reliable 3x3 cones half f32"})
     EXPECT_TRUE(names.contains(name)) << name;
   EXPECT_NE(test::file_text(dir / "table.md").find("| reliable fast |"), std::string::npos);
   EXPECT_EQ(test::file_text(dir / "plot.svg").rfind("<svg ", 0), 0u);
