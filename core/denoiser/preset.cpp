@@ -17,8 +17,7 @@ std::vector<Preset> make_presets() {
                     .kernel_radius = 1,
                     .indirect_basis = RadianceBasis::kIrradiance,
                     .half_indirect = true,
-                    .half_glossy = true,
-                    .history = HistoryFormat::kPacked};
+                    .half_glossy = true};
   const Preset balanced{.name = "balanced"};
   const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
   const Preset reference{.name = "reference", .oracle = true};

@@ -161,7 +161,7 @@ TEST(Preset, ThePlanSaysWhatPassesMoveAndBuffersHold) {
   EXPECT_EQ(text.rfind("recipe reliable\npreset fast\n", 0), 0u) << text;
   EXPECT_NE(text.find("levels of 3x3 taps, "), std::string::npos) << text;
   EXPECT_NE(text.find("B/pixel held"), std::string::npos) << text;
-  EXPECT_NE(text.find("kept of light0.visibility as f16: "), std::string::npos) << text;
+  EXPECT_NE(text.find("kept of light0.visibility as f32: "), std::string::npos) << text;
   // A quarter of the pixels, thus of the bytes.
   DenoiserConfig whole = config_of("fast");
   whole.half_resolution = {"none"};

@@ -93,7 +93,6 @@ TEST(SetPreset, BeforeTheFirstFrameIsAsIfMadeWithIt) {
 
 TEST(SetPreset, AnotherKernelTouchesNoHistory) {
   DenoiserConfig config = test::shadow_config();
-  config.history = "f32";  // or `fast` would keep it in another format
   Denoiser steady(config), switched(config);
   for (int index = 0; index < 6; ++index) {
     switched.set_preset(index % 3 == 1 ? "fast" : "accurate");
