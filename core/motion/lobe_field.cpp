@@ -1,12 +1,10 @@
 #include "core/motion/lobe_field.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/kernels/parallel.h"
 #include "core/kernels/variants.h"
-#include "core/motion/glossy_motion.h"
-#include "core/motion/plain_math.h"
+#include "core/motion/lobe_spread.h"
 
 namespace holdfast {
 namespace {
@@ -34,8 +32,7 @@ HOLDFAST_INLINE void measure_block_body(const LobeBlock& a) {
   const float *hit_m = a.hit_m, *roughness = a.roughness;
   float *valid = a.out[kFieldValid], *ratio = a.out[kFieldRatio], *xx = a.out[kFieldPrecision],
         *xy = a.out[kFieldPrecision + 1], *yy = a.out[kFieldPrecision + 2];
-  const float scale = 1.41421356f * a.focal_px;
-  constexpr float kMost = std::numeric_limits<float>::max();
+  const float focal_px = a.focal_px;
 #pragma GCC ivdep
   for (int i = 0; i < pixels.count; ++i) {
     const float aimed = (dx[i] != 0.0f ? 1.0f : 0.0f) + (dy[i] != 0.0f ? 1.0f : 0.0f) +
@@ -43,30 +40,15 @@ HOLDFAST_INLINE void measure_block_body(const LobeBlock& a) {
     const float placed = (hit_m[i] >= 0.0f ? 1.0f : 0.0f) * (depth[i] > 0.0f ? 1.0f : 0.0f);
     const float known = aimed * placed > 0.0f ? 1.0f : 0.0f;
     const Float3 s = position(pixels, depth, i), n{nx[i], ny[i], nz[i]};
-    const float view_m = __builtin_sqrtf(dot(s, s));
-    // `glossy_spread` of glossy_motion.h.
-    const float finite_share = hit_m[i] / (view_m + hit_m[i]);
-    const float share = hit_m[i] <= kMost ? finite_share : 1.0f;
-    const float alpha = roughness[i] * roughness[i];
-    const float in_plane = min_of(scale * alpha * max_of(share, 0.0f), kWidestGlossySpreadPx);
-    const float out_of_plane = in_plane * abs_of(dot(s, n)) / max_of(view_m, 1e-20f);
-    // `incidence_axis`, likewise.
-    const float step = 1e-3f * view_m;
-    float foot_x, foot_y, foot_found, tip_x, tip_y, tip_found;
-    project_to(now, s, true, foot_x, foot_y, foot_found);
-    project_to(now, {s.x + step * n.x, s.y + step * n.y, s.z + step * n.z}, true, tip_x, tip_y,
-               tip_found);
-    const float ax = tip_x - foot_x, ay = tip_y - foot_y;
-    const float length = __builtin_sqrtf(ax * ax + ay * ay) * foot_found * tip_found;
-    const float inverse = 1.0f / (length > 1e-6f ? length : 1.0f);
-    const float along_x = length > 1e-6f ? ax * inverse : 1.0f;
-    const float along_y = length > 1e-6f ? ay * inverse : 0.0f;
+    const LobeSpread lobe = lobe_spread(now, focal_px, s, n, hit_m[i], roughness[i]);
     // `precision_of_covariance` of effect_field.h.
-    const float in = kLobeVariance * in_plane * in_plane;
-    const float across = kLobeVariance * out_of_plane * out_of_plane;
-    const float vxx = kPixelVariance + in * along_x * along_x + across * along_y * along_y;
-    const float vxy = (in - across) * along_x * along_y;
-    const float vyy = kPixelVariance + in * along_y * along_y + across * along_x * along_x;
+    const float in = kLobeVariance * lobe.in_plane * lobe.in_plane;
+    const float across = kLobeVariance * lobe.out_of_plane * lobe.out_of_plane;
+    const float vxx =
+        kPixelVariance + in * lobe.along_x * lobe.along_x + across * lobe.along_y * lobe.along_y;
+    const float vxy = (in - across) * lobe.along_x * lobe.along_y;
+    const float vyy =
+        kPixelVariance + in * lobe.along_y * lobe.along_y + across * lobe.along_x * lobe.along_x;
     const float half = 0.5f / max_of(vxx * vyy - vxy * vxy, 1e-12f);
     valid[i] = known;
     ratio[i] = 0.0f;

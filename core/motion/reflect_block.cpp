@@ -3,8 +3,7 @@
 #include <limits>
 
 #include "core/kernels/variants.h"
-#include "core/motion/glossy_motion.h"
-#include "core/motion/plain_math.h"
+#include "core/motion/lobe_spread.h"
 
 namespace holdfast {
 namespace {
@@ -78,37 +77,19 @@ HOLDFAST_INLINE void spread_body(const ReflectionSpread& a) {
   const float *image_x = a.from.x, *image_y = a.from.y, *hit_m = a.hit_m, *u = a.u, *v = a.v;
   const float* roughness = a.roughness;
   float *x = a.x, *y = a.y;
-  const float scale = 1.41421356f * a.focal_px;
-  constexpr float kMost = std::numeric_limits<float>::max();
+  const float focal_px = a.focal_px;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
     const Float3 p{px[i], py[i], pz[i]}, n{nx[i], ny[i], nz[i]};
-    const float view_m = length_of(p);
-    // `glossy_spread` of glossy_motion.h.
-    const float finite_share = hit_m[i] / (view_m + hit_m[i]);
-    const float share = hit_m[i] <= kMost ? finite_share : 1.0f;
-    const float alpha = roughness[i] * roughness[i];
-    const float in_plane = min_of(scale * alpha * max_of(share, 0.0f), kWidestGlossySpreadPx);
-    const float out_of_plane = in_plane * abs_of(dot(p, n)) / max_of(view_m, 1e-20f);
-    // `incidence_axis`, likewise.
-    const float step = 1e-3f * view_m;
-    float foot_x, foot_y, foot_found, tip_x, tip_y, tip_found;
-    project_to(then, p, true, foot_x, foot_y, foot_found);
-    project_to(then, {p.x + step * n.x, p.y + step * n.y, p.z + step * n.z}, true, tip_x, tip_y,
-               tip_found);
-    const float ax = tip_x - foot_x, ay = tip_y - foot_y;
-    const float length = __builtin_sqrtf(ax * ax + ay * ay) * foot_found * tip_found;
-    const float inverse = 1.0f / (length > 1e-6f ? length : 1.0f);
-    const float along_x = length > 1e-6f ? ax * inverse : 1.0f;
-    const float along_y = length > 1e-6f ? ay * inverse : 0.0f;
+    const LobeSpread lobe = lobe_spread(then, focal_px, p, n, hit_m[i], roughness[i]);
     // Box-Muller: angles are folded into a quarter of a turn.
     const float radius = __builtin_sqrtf(-2.0f * log_of(u[i]));
     const float turn = v[i] - 0.5f, folded = 0.25f - abs_of(abs_of(turn) - 0.25f);
     const float sine = -sine_of_quarter(turn < 0.0f ? -folded : folded);
     const float cosine = -sine_of_quarter(0.25f - abs_of(turn));
-    const float in = radius * cosine * in_plane, out = radius * sine * out_of_plane;
-    x[i] = image_x[i] + (in * along_x - out * along_y);
-    y[i] = image_y[i] + (in * along_y + out * along_x);
+    const float in = radius * cosine * lobe.in_plane, out = radius * sine * lobe.out_of_plane;
+    x[i] = image_x[i] + (in * lobe.along_x - out * lobe.along_y);
+    y[i] = image_y[i] + (in * lobe.along_y + out * lobe.along_x);
   }
 }
 
