@@ -10,10 +10,12 @@
 #include "client/cli/progress.h"
 #include "client/cli/study_sequence.h"
 #include "client/cli/trade_points.h"
+#include "client/cli/wire_trip.h"
 #include "client/measure/layer_meter.h"
 #include "client/sequence/sequence.h"
 #include "core/denoiser/plan.h"
 #include "core/frame/error.h"
+#include "proto/wire_profile.h"
 
 namespace holdfast::cli {
 namespace {
@@ -33,15 +35,43 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// The frame at hand as it arrives under one wire profile.
+class WiredFrames {
+ public:
+  explicit WiredFrames(const wire::WireProfile& profile)
+      : profile_(profile), trip_(profile.input) {}
+
+  void carry(const Frame& frame) {
+    PlaneSet planes = std::move(arrived_.planes);
+    arrived_ = {frame.index, frame.cut, frame.camera, frame.objects, frame.lights, {}};
+    coded_bytes_ = static_cast<double>(trip_.carry(frame.planes, planes));
+    arrived_.planes = std::move(planes);
+  }
+  const wire::WireProfile& profile() const { return profile_; }
+  const Frame& arrived() const { return arrived_; }
+  double coded_bytes() const { return coded_bytes_; }
+
+ private:
+  const wire::WireProfile& profile_;
+  WireTrip trip_;
+  Frame arrived_;
+  double coded_bytes_ = 0;
+};
+
 /// One plan at work: all settings that come to it share its figures.
 class Candidate {
  public:
-  explicit Candidate(const DenoiserConfig& config) : denoiser_(config) {}
+  /// `frames`: that it is fed with, kept by reference.
+  Candidate(const DenoiserConfig& config, const WiredFrames& frames)
+      : denoiser_(config), frames_(frames), results_trip_(frames.profile().result) {}
 
-  void filter(const Frame& frame, bool timed) {
+  void filter(bool timed) {
     const double start = processor_ms();
-    const FrameReport report = denoiser_.filter(frame, results_);
+    const FrameReport report = denoiser_.filter(frames_.arrived(), filtered_);
     const double ms = processor_ms() - start;
+    wire_bytes_ +=
+        frames_.coded_bytes() + static_cast<double>(results_trip_.carry(filtered_, results_));
+    ++frames_seen_;
     if (!timed) return;
     ms_.push_back(ms);
     std::vector<measure::TradePoint::Stage> parts;
@@ -77,6 +107,7 @@ class Candidate {
         static_cast<double>(denoiser_.memory_bytes()) / (1.0 * config.width * config.height);
     point.history_bytes_per_pixel =
         static_cast<double>(denoiser_.history_bytes()) / (1.0 * config.width * config.height);
+    point.wire_bytes_per_pixel = wire_bytes_ / frames_seen_ / (1.0 * config.width * config.height);
     point.composite_rmse = meters_.back().image().rmse;
     double log_rmse = 0, ssim = 0, count = 0;
     for (std::size_t k = 0; k + 1 < meters_.size(); ++k)
@@ -92,7 +123,10 @@ class Candidate {
 
  private:
   Denoiser denoiser_;
-  PlaneSet results_;
+  const WiredFrames& frames_;
+  WireTrip results_trip_;
+  PlaneSet filtered_, results_;  ///< here, and where they are sent
+  double wire_bytes_ = 0, frames_seen_ = 0;
   std::vector<measure::LayerMeter> meters_;  ///< components, then the composite
   std::vector<double> ms_;
   std::vector<std::vector<measure::TradePoint::Stage>> stages_;
@@ -102,23 +136,37 @@ class Candidate {
 class Candidates {
  public:
   explicit Candidates(const std::vector<TradeSetting>& settings) {
+    for (const std::string& name : wire::profile_names())
+      wired_.push_back(std::make_unique<WiredFrames>(*wire::find_profile(name)));
     std::vector<std::string> plans;
     for (const TradeSetting& setting : settings) {
       std::string plan = Plan::make(setting.config).text();
       plan.erase(plan.find("preset "), plan.find('\n', plan.find("preset ")) -
                                            plan.find("preset "));  // its name alone tells nothing
+      plan += setting.point.wire;
       auto known = std::find(plans.begin(), plans.end(), plan);
       of_setting_.push_back(static_cast<std::size_t>(known - plans.begin()));
       if (known != plans.end()) continue;
       plans.push_back(std::move(plan));
-      all_.push_back(std::make_unique<Candidate>(setting.config));
+      const auto wired = std::find_if(wired_.begin(), wired_.end(), [&](const auto& frames) {
+        return frames->profile().name == setting.point.wire;
+      });
+      all_.push_back(std::make_unique<Candidate>(setting.config, **wired));
     }
   }
-  auto begin() const { return all_.begin(); }
-  auto end() const { return all_.end(); }
+
+  void filter(const Frame& frame, bool timed) {
+    for (const auto& frames : wired_) frames->carry(frame);
+    for (const auto& candidate : all_) candidate->filter(timed);
+  }
+  void judge(const std::vector<measure::ReferenceLayer>& references,
+             const std::vector<PlaneId>& layers) {
+    for (const auto& candidate : all_) candidate->judge(references, layers);
+  }
   const Candidate& of_setting(std::size_t k) const { return *all_[of_setting_[k]]; }
 
  private:
+  std::vector<std::unique_ptr<WiredFrames>> wired_;
   std::vector<std::unique_ptr<Candidate>> all_;
   std::vector<std::size_t> of_setting_;
 };
@@ -163,8 +211,11 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
   if (static_cast<std::int64_t>(indices.size()) > frames)
     indices.resize(static_cast<std::size_t>(frames));
   const DenoiserConfig config = config_of(sequence);
-  const std::vector<TradeSetting> settings = trade_settings(config, options.recipes);
-  const Candidates candidates(settings);
+  std::vector<TradeSetting> settings = trade_settings(config, options.recipes);
+  const std::size_t unwired = settings.size();
+  for (TradeSetting& setting : wire_settings(config, options.recipes.front()))
+    settings.push_back(std::move(setting));
+  Candidates candidates(settings);
   Progress progress("trade " + name, static_cast<std::int64_t>(indices.size()), options.quiet);
   const std::vector<PlaneId> layers = layers_of(config);
   std::vector<measure::ReferenceTrack> tracks;
@@ -172,10 +223,9 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
   std::size_t judged = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const Frame frame = sequence.read_frame(indices[i]);
-    for (const auto& candidate : candidates) candidate->filter(frame, i >= kWarmUp);
+    candidates.filter(frame, i >= kWarmUp);
     if (sequence.has_reference(indices[i])) {
-      const auto references = references_of(sequence, frame, i, layers, tracks);
-      for (const auto& candidate : candidates) candidate->judge(references, layers);
+      candidates.judge(references_of(sequence, frame, i, layers, tracks), layers);
       ++judged;
     }
     progress.update(static_cast<std::int64_t>(i) + 1);
@@ -186,9 +236,12 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
                                 ", " + std::to_string(judged) + " of them with references",
                             config.width,
                             config.height,
+                            {},
                             {}};
-  for (std::size_t k = 0; k < settings.size(); ++k)
-    candidates.of_setting(k).write(scene.points.emplace_back(settings[k].point));
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    auto& points = k < unwired ? scene.points : scene.wire_points;
+    candidates.of_setting(k).write(points.emplace_back(settings[k].point));
+  }
   return scene;
 }
 

@@ -10,6 +10,7 @@
 #include "client/cli/embedded_server.h"
 #include "client/cli/percentiles.h"
 #include "client/cli/progress.h"
+#include "client/cli/wire_trip.h"
 #include "client/measure/judged.h"
 #include "client/measure/layer_meter.h"
 #include "client/sequence/sequence.h"
@@ -17,8 +18,6 @@
 
 namespace holdfast::cli {
 namespace {
-
-using Codings = std::array<wire::PlaneCoding, kPlaneKindCount>;
 
 /// CPU time of this thread, nanoseconds.
 double thread_ns() {
@@ -30,7 +29,7 @@ double thread_ns() {
 /// Costs of one direction: encodes and decodes frames as both ends of a stream do.
 class CostMeter {
  public:
-  explicit CostMeter(const Codings& codings) : codings_(codings) {}
+  explicit CostMeter(const WireCodings& codings) : trip_(codings) {}
 
   /// `pixels`: of the frame.
   void add(const PlaneSet& planes, const std::vector<PlaneId>& ids, double pixels) {
@@ -39,28 +38,18 @@ class CostMeter {
       const Plane& plane = planes.at(id);
       WireCost& sum = sums_[id];
       const double start = thread_ns();
-      const wire::PlaneCoding coding = wire::fitting_coding(plane, codings_);
-      const std::size_t size = wire::plane_bytes(plane, coding.format);
-      const std::size_t count = (size + wire::kMaxChunkBytes - 1) / wire::kMaxChunkBytes;
-      if (blocks_.size() < count) blocks_.resize(count);
-      for (std::size_t i = 0; i < count; ++i)
-        coder_.encode(plane, coding, i * wire::kMaxChunkBytes, blocks_[i]);
+      trip_.encode(plane);
       const double middle = thread_ns();
       Plane& decoded = decoded_.add(id, plane.width(), plane.height());
       const double restart = thread_ns();  // what `add` allocates is not counted
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t offset = i * wire::kMaxChunkBytes;
-        const std::size_t held = std::min(wire::kMaxChunkBytes, size - offset);
-        if (!coder_.decode(decoded, coding, offset, held, blocks_[i]))
-          throw std::logic_error("a block cannot be decoded");
-        sum.coded_bytes += static_cast<double>(blocks_[i].size());
-      }
+      trip_.decode(decoded);
       const double decode_ns = thread_ns() - restart;
       sum.encode_ns += middle - start;
       sum.decode_ns += decode_ns;
       encode += middle - start;
       decode += decode_ns;
-      sum.plain_bytes += static_cast<double>(size);
+      sum.plain_bytes += static_cast<double>(trip_.plain_bytes());
+      sum.coded_bytes += static_cast<double>(trip_.coded_bytes());
     }
     pixels_ += pixels;
     encode_ns_.push_back(encode / pixels);
@@ -88,9 +77,7 @@ class CostMeter {
   }
 
  private:
-  const Codings& codings_;
-  wire::PlaneCoder coder_;
-  std::vector<std::string> blocks_;
+  WireTrip trip_;
   PlaneSet decoded_;
   std::map<PlaneId, WireCost> sums_;
   std::vector<double> encode_ns_, decode_ns_;

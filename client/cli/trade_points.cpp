@@ -4,6 +4,7 @@
 
 #include "core/denoiser/preset.h"
 #include "core/denoiser/recipe.h"
+#include "proto/wire_profile.h"
 
 namespace holdfast::cli {
 namespace {
@@ -81,6 +82,18 @@ void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
   }
 }
 
+std::vector<TradeSetting> preset_settings(const DenoiserConfig& scene, const std::string& recipe) {
+  std::vector<TradeSetting> settings;
+  for (const Preset& preset : all_presets()) {
+    if (preset.oracle) continue;  // the error of `balanced`, at ten times the time
+    TradeSetting setting = setting_of(scene, recipe, preset);
+    setting.point.presets = {preset.name};
+    setting.config.preset = preset.name;
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
 }  // namespace
 
 std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
@@ -88,15 +101,21 @@ std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
   std::vector<TradeSetting> settings;
   for (const std::string& recipe : recipes) {
     find_recipe(recipe);
-    for (const Preset& preset : all_presets()) {
-      if (preset.oracle) continue;  // the error of `balanced`, at ten times the time
-      TradeSetting setting = setting_of(scene, recipe, preset);
-      setting.point.presets = {preset.name};
-      setting.config.preset = preset.name;
+    for (TradeSetting& setting : preset_settings(scene, recipe))
       settings.push_back(std::move(setting));
-    }
     if (recipe == recipes.front()) add_sweep(scene, recipe, settings);
   }
+  return settings;
+}
+
+std::vector<TradeSetting> wire_settings(const DenoiserConfig& scene, const std::string& recipe) {
+  std::vector<TradeSetting> settings;
+  for (const TradeSetting& preset : preset_settings(scene, recipe))
+    for (const std::string& profile : wire::profile_names()) {
+      if (profile == wire::exact_profile().name) continue;
+      settings.push_back(preset);
+      settings.back().point.wire = profile;
+    }
   return settings;
 }
 

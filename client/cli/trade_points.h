@@ -22,4 +22,7 @@ struct TradeSetting {
 std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
                                          const std::vector<std::string>& recipes);
 
+/// The presets of `recipe` again, under each wire profile but `exact`.
+std::vector<TradeSetting> wire_settings(const DenoiserConfig& scene, const std::string& recipe);
+
 }  // namespace holdfast::cli

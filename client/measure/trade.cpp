@@ -16,14 +16,49 @@ const TradePoint* balanced(const TradeScene& scene) {
   return nullptr;
 }
 
-const TradePoint* same_setting(const TradeScene& scene, const TradePoint& point) {
-  for (const TradePoint& other : scene.points)
-    if (other.recipe == point.recipe && other.kernel_radius == point.kernel_radius &&
-        other.more_levels == point.more_levels && other.basis == point.basis &&
-        other.half_indirect == point.half_indirect && other.half_glossy == point.half_glossy &&
-        other.history == point.history)
+const TradePoint* same_setting(const std::vector<TradePoint>& points, const TradePoint& point) {
+  for (const TradePoint& other : points)
+    if (other.wire == point.wire && other.recipe == point.recipe &&
+        other.kernel_radius == point.kernel_radius && other.more_levels == point.more_levels &&
+        other.basis == point.basis && other.half_indirect == point.half_indirect &&
+        other.half_glossy == point.half_glossy && other.history == point.history)
       return &other;
   return nullptr;
+}
+
+/// Means over the scenes of what all of them have among `points`.
+std::vector<TradePoint> means_of(const std::vector<TradeScene>& scenes,
+                                 std::vector<TradePoint> TradeScene::*points) {
+  std::vector<TradePoint> means;
+  const auto count = static_cast<double>(scenes.size());
+  for (const TradePoint& point : scenes.front().*points) {
+    TradePoint mean = point;
+    mean.stages.clear();
+    double time = 0, error = 0, composite = 0, bytes = 0, history = 0, wire = 0, ssim = 0;
+    bool everywhere = true;
+    for (const TradeScene& scene : scenes) {
+      const TradePoint* own = same_setting(scene.*points, point);
+      everywhere &= own != nullptr;
+      if (own == nullptr) continue;
+      time += std::log(own->ms / balanced(scene)->ms);
+      error += std::log(own->rmse / balanced(scene)->rmse);
+      composite += std::log(own->composite_rmse / balanced(scene)->composite_rmse);
+      bytes += std::log(own->bytes_per_pixel);
+      history += own->history_bytes_per_pixel;
+      wire += own->wire_bytes_per_pixel;
+      ssim += own->ssim;
+    }
+    if (!everywhere) continue;
+    mean.ms = std::exp(time / count);
+    mean.rmse = std::exp(error / count);
+    mean.composite_rmse = std::exp(composite / count);
+    mean.bytes_per_pixel = std::exp(bytes / count);
+    mean.history_bytes_per_pixel = history / count;
+    mean.wire_bytes_per_pixel = wire / count;
+    mean.ssim = ssim / count;
+    means.push_back(mean);
+  }
+  return means;
 }
 
 }  // namespace
@@ -32,7 +67,7 @@ std::string point_name(const TradePoint& point) {
   std::string name = point.recipe;
   for (const std::string& preset : point.presets)
     name += (&preset == &point.presets.front() ? " " : ", ") + preset;
-  if (!point.presets.empty()) return name;
+  if (!point.presets.empty()) return point.wire == "exact" ? name : name + ", wire " + point.wire;
   name += point.kernel_radius == 1 ? " 3x3" : " 5x5";
   if (point.more_levels != 0)
     name += (point.more_levels > 0 ? " +" : " ") + std::to_string(point.more_levels) + " levels";
@@ -68,38 +103,14 @@ double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t poin
 }
 
 TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
-  TradeScene all{"all scenes", "Geometric means over", 0, 0, {}};
+  TradeScene all{"all scenes", "Geometric means over", 0, 0, {}, {}};
   if (scenes.empty()) return all;
   for (const TradeScene& scene : scenes) {
     all.caption += (&scene == &scenes.front() ? " " : ", ") + scene.name;
     if (balanced(scene) == nullptr) return all;
   }
-  const auto count = static_cast<double>(scenes.size());
-  for (const TradePoint& point : scenes.front().points) {
-    TradePoint mean = point;
-    mean.stages.clear();
-    double time = 0, error = 0, composite = 0, bytes = 0, history = 0, ssim = 0;
-    bool everywhere = true;
-    for (const TradeScene& scene : scenes) {
-      const TradePoint* own = same_setting(scene, point);
-      everywhere &= own != nullptr;
-      if (own == nullptr) continue;
-      time += std::log(own->ms / balanced(scene)->ms);
-      error += std::log(own->rmse / balanced(scene)->rmse);
-      composite += std::log(own->composite_rmse / balanced(scene)->composite_rmse);
-      bytes += std::log(own->bytes_per_pixel);
-      history += own->history_bytes_per_pixel;
-      ssim += own->ssim;
-    }
-    if (!everywhere) continue;
-    mean.ms = std::exp(time / count);
-    mean.rmse = std::exp(error / count);
-    mean.composite_rmse = std::exp(composite / count);
-    mean.bytes_per_pixel = std::exp(bytes / count);
-    mean.history_bytes_per_pixel = history / count;
-    mean.ssim = ssim / count;
-    all.points.push_back(mean);
-  }
+  all.points = means_of(scenes, &TradeScene::points);
+  all.wire_points = means_of(scenes, &TradeScene::wire_points);
   return all;
 }
 

@@ -15,9 +15,10 @@ struct TradePoint {
   std::string basis;                 ///< of indirect light, as DenoiserConfig names it; the
                                      ///< preset's is that of recipes that keep cones
   bool half_indirect = false, half_glossy = false;
-  std::string history;  ///< its precision, as DenoiserConfig names it; the preset's is that
-                        ///< of recipes that keep no moments
-  double ms = 0;        ///< processor time of a frame in the core, one thread; median over frames
+  std::string history;         ///< its precision, as DenoiserConfig names it; the preset's is that
+                               ///< of recipes that keep no moments
+  std::string wire = "exact";  ///< profile that its frames and results have been through
+  double ms = 0;  ///< processor time of a frame in the core, one thread; median over frames
   struct Stage {
     std::string name;  ///< "frame", or a component's
     double ms = 0;     ///< its share of `ms`
@@ -25,6 +26,7 @@ struct TradePoint {
   std::vector<Stage> stages;
   double bytes_per_pixel = 0;          ///< held for history and scratch
   double history_bytes_per_pixel = 0;  ///< of these, kept from frame to frame
+  double wire_bytes_per_pixel = 0;     ///< of a frame to the server and its results back, coded
   /// Geometric mean of the RMSE and mean of the SSIM over the filtered components, each judged over
   /// the image and over the effect. A composite would weigh components as the scene's materials
   /// happen to, and an image hides what moves.
@@ -37,6 +39,9 @@ struct TradeScene {
   std::string name, caption;
   int width = 0, height = 0;  ///< pixels
   std::vector<TradePoint> points;
+  /// The presets of the first recipe under the wire profiles that round or compress. Not among
+  /// `points`: what they save is no time in the core, so that the front knows nothing of them.
+  std::vector<TradePoint> wire_points = {};
 };
 
 /// "reliable fast" of a preset, else what is chosen: "reliable 3x3 irradiance half indirect".
@@ -52,8 +57,8 @@ std::vector<std::size_t> pareto_front(const std::vector<TradePoint>& points,
 double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t point);
 
 /// All scenes as one: of each setting that every scene has, the geometric means of time, both RMSE
-/// and bytes and the mean of SSIM; time and RMSE are over those of "reliable balanced" on each
-/// scene. No points if that one is missing.
+/// and bytes held and the means of SSIM and other bytes; time and RMSE are over those of "reliable
+/// balanced" on each scene. No points if that one is missing.
 TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes);
 
 }  // namespace holdfast::measure

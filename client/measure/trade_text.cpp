@@ -17,36 +17,43 @@ bool on_front(const TradeScene& scene, std::size_t k) {
   return std::find(front.begin(), front.end(), k) != front.end();
 }
 
+nlohmann::ordered_json point_json(const TradePoint& point) {
+  nlohmann::ordered_json half = nlohmann::ordered_json::array();
+  if (point.half_indirect) half.push_back("indirect");
+  if (point.half_glossy) half.push_back("glossy");
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const TradePoint::Stage& stage : point.stages) stages[stage.name] = stage.ms;
+  return {{"name", point_name(point)},
+          {"recipe", point.recipe},
+          {"presets", point.presets},
+          {"kernel_radius", point.kernel_radius},
+          {"more_levels", point.more_levels},
+          {"indirect_basis", point.basis},
+          {"half_resolution", half},
+          {"history", point.history},
+          {"wire", point.wire},
+          {"ms", point.ms},
+          {"stages", stages},
+          {"bytes_per_pixel", point.bytes_per_pixel},
+          {"history_bytes_per_pixel", point.history_bytes_per_pixel},
+          {"wire_bytes_per_pixel", point.wire_bytes_per_pixel},
+          {"rmse", point.rmse},
+          {"ssim", point.ssim},
+          {"composite_rmse", point.composite_rmse}};
+}
+
 nlohmann::ordered_json scene_json(const TradeScene& scene) {
   nlohmann::ordered_json json = {{"caption", scene.caption},
                                  {"width", scene.width},
                                  {"height", scene.height},
-                                 {"points", nlohmann::ordered_json::array()}};
+                                 {"points", nlohmann::ordered_json::array()},
+                                 {"wire", nlohmann::ordered_json::array()}};
   for (std::size_t k = 0; k < scene.points.size(); ++k) {
-    const TradePoint& point = scene.points[k];
-    nlohmann::ordered_json half = nlohmann::ordered_json::array();
-    if (point.half_indirect) half.push_back("indirect");
-    if (point.half_glossy) half.push_back("glossy");
-    nlohmann::ordered_json stages = nlohmann::ordered_json::object();
-    for (const TradePoint::Stage& stage : point.stages) stages[stage.name] = stage.ms;
-    json["points"].push_back({{"name", point_name(point)},
-                              {"recipe", point.recipe},
-                              {"presets", point.presets},
-                              {"kernel_radius", point.kernel_radius},
-                              {"more_levels", point.more_levels},
-                              {"indirect_basis", point.basis},
-                              {"half_resolution", half},
-                              {"history", point.history},
-                              {"ms", point.ms},
-                              {"stages", stages},
-                              {"bytes_per_pixel", point.bytes_per_pixel},
-                              {"history_bytes_per_pixel", point.history_bytes_per_pixel},
-                              {"rmse", point.rmse},
-                              {"ssim", point.ssim},
-                              {"composite_rmse", point.composite_rmse},
-                              {"front", on_front(scene, k)},
-                              {"rmse_behind_front", rmse_behind_front(scene.points, k)}});
+    nlohmann::ordered_json& point = json["points"].emplace_back(point_json(scene.points[k]));
+    point["front"] = on_front(scene, k);
+    point["rmse_behind_front"] = rmse_behind_front(scene.points, k);
   }
+  for (const TradePoint& point : scene.wire_points) json["wire"].push_back(point_json(point));
   return json;
 }
 
@@ -74,9 +81,31 @@ std::vector<std::vector<std::string>> rows_of(const TradeScene& scene, bool rela
   return rows;
 }
 
-std::string scene_markdown(const TradeScene& scene, bool relative) {
-  std::string text = "**" + scene.name + "**: " + scene.caption + "\n\n";
-  const auto rows = rows_of(scene, relative);
+/// The presets of the first recipe, each under every wire profile.
+std::vector<std::vector<std::string>> wire_rows_of(const TradeScene& scene, bool relative) {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const TradePoint& point) {
+    rows.push_back({point_name(point), number_text(point.wire_bytes_per_pixel, 1),
+                    number_text(point.rmse, relative ? 4 : 5),
+                    number_text(point.composite_rmse, relative ? 4 : 5)});
+  };
+  for (const TradePoint& point : scene.points) {
+    bool listed = false;
+    for (const TradePoint& wired : scene.wire_points) {
+      if (point.recipe != wired.recipe || point.presets != wired.presets) continue;
+      if (!listed) add(point);
+      listed = true;
+      add(wired);
+    }
+  }
+  if (!rows.empty())
+    rows.insert(rows.begin(), {"setting and wire profile", "B/pixel on the wire", "RMSE",
+                               "RMSE of the composite"});
+  return rows;
+}
+
+std::string table_markdown(const std::vector<std::vector<std::string>>& rows) {
+  std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += "|";
     for (const std::string& cell : rows[r]) text += " " + cell + " |";
@@ -89,11 +118,8 @@ std::string scene_markdown(const TradeScene& scene, bool relative) {
   return text + "\n";
 }
 
-std::string scene_html(const TradeScene& scene, bool relative) {
-  std::string html = "<section><h2>" + escaped(scene.name) + "</h2><p>" + escaped(scene.caption) +
-                     ".</p><figure>" + trade_panels_svg(scene, relative) +
-                     "</figure><div class=\"wide\"><table>";
-  const auto rows = rows_of(scene, relative);
+std::string table_html(const std::vector<std::vector<std::string>>& rows) {
+  std::string html = "<div class=\"wide\"><table>";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     html += "<tr>";
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
@@ -102,7 +128,22 @@ std::string scene_html(const TradeScene& scene, bool relative) {
     }
     html += "</tr>";
   }
-  return html + "</table></div></section>";
+  return html + "</table></div>";
+}
+
+std::string scene_markdown(const TradeScene& scene, bool relative) {
+  std::string text = "**" + scene.name + "**: " + scene.caption + "\n\n" +
+                     table_markdown(rows_of(scene, relative));
+  if (!scene.wire_points.empty()) text += table_markdown(wire_rows_of(scene, relative));
+  return text;
+}
+
+std::string scene_html(const TradeScene& scene, bool relative) {
+  std::string html = "<section><h2>" + escaped(scene.name) + "</h2><p>" + escaped(scene.caption) +
+                     ".</p><figure>" + trade_panels_svg(scene, relative) + "</figure>" +
+                     table_html(rows_of(scene, relative));
+  if (!scene.wire_points.empty()) html += table_html(wire_rows_of(scene, relative));
+  return html + "</section>";
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -151,7 +192,7 @@ void write_trade_report(const std::filesystem::path& file, const std::vector<Tra
 
 void write_trade_svg(const std::filesystem::path& file, const std::vector<TradeScene>& scenes) {
   const TradeScene all =
-      scenes.size() > 1 ? trade_over_scenes(scenes) : TradeScene{{}, {}, 0, 0, {}};
+      scenes.size() > 1 ? trade_over_scenes(scenes) : TradeScene{{}, {}, 0, 0, {}, {}};
   write(file, (all.points.empty() ? trade_panels_svg(scenes.front(), false)
                                   : trade_panels_svg(all, true)) +
                   "\n");

@@ -93,7 +93,24 @@ TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
   EXPECT_DOUBLE_EQ(all.points[0].composite_rmse, 1);
   EXPECT_NEAR(all.points[1].composite_rmse, std::sqrt(4 * 3), 1e-12);
   EXPECT_EQ(trade_over_scenes({one, two}).points.size(), 1u) << "one scene lacks the other setting";
-  EXPECT_TRUE(trade_over_scenes({TradeScene{"x", "", 8, 8, {half}}}).points.empty());
+  EXPECT_TRUE(trade_over_scenes({TradeScene{"x", "", 8, 8, {half}, {}}}).points.empty());
+}
+
+TEST(Trade, WireProfilesAreNotOnTheFront) {
+  TradeScene one{"one", "", 8, 8, {point("reliable", 10, 0.1, {"balanced"})}, {}};
+  TradePoint wired = one.points.front();
+  wired.wire = "compact";
+  wired.ms = 9;  // by chance
+  wired.wire_bytes_per_pixel = 20;
+  one.wire_points = {wired};
+  TradeScene two = one;
+  two.wire_points.front().wire_bytes_per_pixel = 40;
+  const TradeScene all = trade_over_scenes({one, two});
+  EXPECT_EQ(pareto_front(all.points, "reliable").size(), 1u);
+  ASSERT_EQ(all.wire_points.size(), 1u);
+  EXPECT_DOUBLE_EQ(all.wire_points.front().wire_bytes_per_pixel, 30);
+  EXPECT_EQ(point_name(all.wire_points.front()), "reliable balanced, wire compact");
+  EXPECT_NE(trade_markdown({one}).find("| reliable balanced, wire compact |"), std::string::npos);
 }
 
 TEST(Trade, NamesAreThoseOfPresetsElseOfWhatIsChosen) {
