@@ -1,86 +1,14 @@
 #include "core/spatial/half_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
-#include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
 namespace {
 
-constexpr float kPlaneTolerancePx = 2.0f;  // as for history taps; ours
-constexpr float kNormalCosine = 0.9f;      // likewise
 constexpr float kMostDepthChange = 0.25f;  // of the depth, where a surface is seen edge-on; ours
-
-/// The quad of half pixel (x, y): its pixels that are inside the image.
-struct Quad {
-  int x[HalfGrid::kQuad], y[HalfGrid::kQuad];
-  bool inside[HalfGrid::kQuad];
-
-  Quad(int half_x, int half_y, int width, int height) {
-    for (int k = 0; k < HalfGrid::kQuad; ++k) {
-      x[k] = 2 * half_x + k % 2;
-      y[k] = 2 * half_y + k / 2;
-      inside[k] = x[k] < width && y[k] < height;
-    }
-  }
-};
-
-/// One pixel's surface.
-struct Surface {
-  float depth = 0;  ///< 0: none
-  glm::vec3 point{0}, normal{0};
-  std::uint32_t id = 0;
-};
-
-bool agree(const Surface& a, const Surface& b, const Guides& guides) {
-  if (a.id != b.id || glm::dot(a.normal, b.normal) < kNormalCosine) return false;
-  const PixelRays<float>& rays = guides.rays;
-  const float width_m = static_cast<float>(guides.view.pixel_angle) *
-                        (rays.near_weight + rays.far_weight * std::min(a.depth, b.depth));
-  const float twice = std::abs(glm::dot(a.normal + b.normal, a.point - b.point));
-  return twice <= 2.0f * kPlaneTolerancePx * width_m;
-}
-
-/// The pixels, a bit each, that show the surface of pixel k.
-unsigned surface_of(const Surface* pixels, int k, const Guides& guides) {
-  unsigned members = 0;
-  for (int j = 0; j < HalfGrid::kQuad; ++j)
-    if (pixels[j].depth > 0.0f && (j == k || agree(pixels[k], pixels[j], guides)))
-      members |= 1u << j;
-  return members;
-}
-
-void choose(const Guides& guides, int x, int y, HalfGrid& grid) {
-  constexpr int kQuad = HalfGrid::kQuad;
-  const Quad quad(x, y, guides.view.width, guides.view.height);
-  Surface pixels[kQuad];
-  for (int k = 0; k < kQuad; ++k) {
-    if (!quad.inside[k]) continue;
-    pixels[k].depth = guides.depth().at(quad.x[k], quad.y[k]);
-    if (!(pixels[k].depth > 0.0f)) continue;
-    pixels[k].point = guides.position_at(quad.x[k], quad.y[k]);
-    pixels[k].normal = guides.normal_at(quad.x[k], quad.y[k]);
-    pixels[k].id = guides.id[0].at(quad.x[k], quad.y[k]);
-  }
-  int best = 0, most = 0;
-  unsigned members = 1;
-  for (int k = 0; k < kQuad && most < kQuad; ++k) {
-    if (!(pixels[k].depth > 0.0f)) continue;
-    const unsigned shown = surface_of(pixels, k, guides);
-    const int count = std::popcount(shown);
-    if (count < most || (count == most && pixels[k].depth >= pixels[best].depth)) continue;
-    best = k;
-    most = count;
-    members = shown;
-  }
-  grid.representative[0].at(x, y) = static_cast<std::uint32_t>(best);
-  for (int k = 0; k < kQuad; ++k)
-    grid.share[k].at(x, y) =
-        (members >> k & 1u) != 0 ? 1.0f / static_cast<float>(std::max(most, 1)) : 0.0f;
-}
 
 /// Where the ray of half pixel (x, y) meets the tangent plane of the surface (px, py) of `full`.
 float depth_in_the_middle(const Guides& full, int px, int py, const PixelRays<float>& rays, int x,
@@ -110,12 +38,6 @@ void for_each_representative(const HalfGrid& grid, const Body& body) {
 }
 
 }  // namespace
-
-void choose_representatives(const Guides& full, HalfGrid& grid) {
-  for_each_row(grid.share.height(), [&](int y) {
-    for (int x = 0; x < grid.share.width(); ++x) choose(full, x, y, grid);
-  });
-}
 
 void halve_guides(const Guides& full, const HalfGrid& grid, Guides& half) {
   for_each_representative(grid, [&](int x, int y, int px, int py) {
