@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "client/scenes/mesh.h"
+#include "client/sequence/strict_json.h"
 #include "core/frame/error.h"
 
 namespace holdfast::scenes {
@@ -35,7 +36,8 @@ class ObjReader {
 
  private:
   [[noreturn]] void fail(const std::string& rule, const std::string& value) const {
-    throw InputError("mesh " + file_ + " line " + std::to_string(line_number_), rule, value);
+    throw InputError("mesh " + file_ + " line " + std::to_string(line_number_), rule,
+                     shortened(value));
   }
 
   glm::vec3 read_vector(std::istringstream& words) const {

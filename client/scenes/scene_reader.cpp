@@ -105,7 +105,8 @@ Part read_part(StrictObject& in, const std::filesystem::path& folder) {
     part.shape = PartShape::kMesh;
     part.file = folder / in.text("file");
   } else {
-    throw InputError(in.subject("shape"), "must be box, quad, sphere, cylinder or mesh", shape);
+    throw InputError(in.subject("shape"), "must be box, quad, sphere, cylinder or mesh",
+                     shortened(shape));
   }
   const double thickness = part.shape == PartShape::kQuad ? 1.0 : part.size_m.y;
   if (!(part.size_m.x > 0.0 && thickness > 0.0 && part.size_m.z > 0.0))
@@ -154,7 +155,7 @@ SceneLight read_light(StrictObject& in) {
   const auto shape = light_shape_from_name(name);
   if (!shape)
     throw InputError(in.subject("shape"), "must be rectangle, disk, sphere, point or directional",
-                     name);
+                     shortened(name));
   out.light.shape = *shape;
   out.light.width = number_or(in, "width", 0.0, 0.0);
   out.light.height = number_or(in, "height", 0.0, 0.0);
@@ -209,7 +210,7 @@ SceneCamera read_camera(StrictObject& parent) {
 Scene read_top(StrictObject& in, const std::filesystem::path& folder) {
   const std::string format = in.text("format");
   if (format != "holdfast-scene")
-    throw InputError(in.subject("format"), "must be holdfast-scene", format);
+    throw InputError(in.subject("format"), "must be holdfast-scene", shortened(format));
   in.integer("version", 1, 1);
   Scene scene;
   scene.name = in.text("name");
@@ -240,9 +241,7 @@ Scene read_json(const Json& json, const std::filesystem::path& file) {
 }  // namespace
 
 Scene scene_from_json(const std::string& text, const std::filesystem::path& file) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw InputError("file " + file.string(), "must be JSON", "not");
-  return read_json(json, file);
+  return read_json(parse_json(text, file.string()), file);
 }
 
 Scene read_scene(const std::filesystem::path& file) {

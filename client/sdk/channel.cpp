@@ -75,6 +75,10 @@ std::shared_ptr<grpc::Channel> make_channel(const SessionOptions& session) {
   args.SetInt(GRPC_ARG_HTTP2_MAX_FRAME_SIZE, kHttp2FrameBytes);
   args.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // one connection for each session
   args.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  // A stream that begins just as its connection is lost is repeated by gRPC on the next one, and
+  // all its later writes are then reported as failed although they are sent (1.51). The keeper
+  // opens another one itself.
+  args.SetInt(GRPC_ARG_ENABLE_RETRIES, 0);
   args.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   args.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
   args.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);

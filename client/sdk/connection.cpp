@@ -1,6 +1,12 @@
 #include "client/sdk/connection.h"
 
 namespace holdfast::client {
+namespace {
+
+// A failed write means that the stream has ended; its status, which says why, comes by itself.
+constexpr std::chrono::milliseconds kEndAfterFailedWrite{1000};
+
+}  // namespace
 
 Connection::Connection(grpc::GenericStub& stub, Exchange& exchange, Config config,
                        const v1::Hello& hello)
@@ -39,7 +45,13 @@ grpc::Status Connection::wait_open(std::chrono::milliseconds timeout) {
 
 grpc::Status Connection::wait_end() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return status_.has_value(); });
+  const auto over = [this] { return status_.has_value(); };
+  changed_.wait(lock, [&] { return over() || write_failed_; });
+  if (!changed_.wait_for(lock, kEndAfterFailedWrite, over)) {
+    context_.TryCancel();
+    changed_.wait(lock, over);
+    status_ = {grpc::StatusCode::UNAVAILABLE, "a write failed, and the stream did not end"};
+  }
   return *status_;
 }
 
@@ -115,7 +127,9 @@ void Connection::handle_response() {
 void Connection::OnWriteDone(bool ok) {
   const std::lock_guard lock(mutex_);
   writing_ = false;
-  if (ok) write_on();
+  if (ok) return write_on();
+  write_failed_ = true;
+  changed_.notify_all();
 }
 
 void Connection::OnDone(const grpc::Status& status) {
@@ -137,7 +151,7 @@ void Connection::write_on() {
     wake_.notify_one();
     return;
   }
-  if (writing_ || ended_ || writes_done_ || !welcome_) return;
+  if (writing_ || ended_ || write_failed_ || writes_done_ || !welcome_) return;
   has_prepared_ = next_message(prepared_, nullptr);
   start_write();
   end_writes();
@@ -162,7 +176,7 @@ bool Connection::next_message(wire::OutgoingMessage& message, std::unique_lock<s
 
 /// Writes the prepared message, if there is one and none is being written.
 void Connection::start_write() {
-  if (!has_prepared_ || writing_ || ended_) return;
+  if (!has_prepared_ || writing_ || ended_ || write_failed_) return;
   request_.Swap(&prepared_.bytes);
   has_prepared_ = false;
   exchange_.count(prepared_.plane_bytes, 0);

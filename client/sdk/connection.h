@@ -44,7 +44,8 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
   /// Waits for Welcome. If none comes in time or the stream ends, it has ended with the status
   /// returned.
   grpc::Status wait_open(std::chrono::milliseconds timeout);
-  /// Waits for the end of the stream; returns its status.
+  /// Waits for the end of the stream, which follows a failed write within a second or is brought
+  /// about then; returns its status.
   grpc::Status wait_end();
   /// The exchange has something new to send.
   void pump();
@@ -78,6 +79,7 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
   v1::DenoiseResponse response_;  ///< what was received, unless it is a chunk
   bool welcome_ = false, writing_ = false, writes_done_ = false;
   bool ended_ = false;                  ///< no more reads or writes may be started
+  bool write_failed_ = false;           ///< as is told of a stream that has ended
   std::optional<grpc::Status> status_;  ///< after OnDone
   std::string violation_;               ///< how the server broke the protocol
 

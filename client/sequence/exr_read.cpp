@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "client/sequence/exr.h"
+#include "client/sequence/exr_header.h"
 #include "core/frame/error.h"
 
 namespace holdfast {
@@ -35,6 +36,7 @@ std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& file,
   const std::string subject = file_subject(file);
   if (!std::filesystem::is_regular_file(file))
     throw InputError(subject, "must be an existing EXR file", "missing");
+  check_exr_header(file);
   auto input = OIIO::ImageInput::open(file.string());
   if (!input) throw InputError(subject, "must be a readable EXR file", OIIO::geterror());
   if (std::strcmp(input->format_name(), "openexr") != 0)

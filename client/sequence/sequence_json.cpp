@@ -58,7 +58,7 @@ Light read_light(StrictObject& json) {
   const auto known = light_shape_from_name(shape);
   if (!known)
     throw InputError(json.subject("shape"), "must be rectangle, disk, sphere, point or directional",
-                     '"' + shape + '"');
+                     '"' + shortened(shape) + '"');
   light.shape = *known;
   if (light.shape == LightShape::kRectangle) {
     light.width = light_size(json, "width");
@@ -74,7 +74,7 @@ Light read_light(StrictObject& json) {
 SequenceHeader read_header(StrictObject& json) {
   if (const std::string format = json.text("format"); format != kFormat)
     throw InputError(json.subject("format"), "must be \"" + std::string(kFormat) + '"',
-                     '"' + format + '"');
+                     '"' + shortened(format) + '"');
   if (const Json& version = json.required("version"); version != kVersion)
     throw InputError(json.subject("version"), "must be 1", json_excerpt(version));
   SequenceHeader header;
@@ -113,7 +113,7 @@ std::uint32_t id_from_key(const StrictObject& json, const std::string& key, std:
       id < lowest)
     throw InputError(json.subject(key),
                      "must have an id in " + std::to_string(lowest) + "..4294967295 as its key",
-                     '"' + key + '"');
+                     '"' + shortened(key) + '"');
   return id;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
+#include <vector>
 
 #include "core/frame/conventions.h"
 #include "core/frame/error.h"
@@ -72,27 +74,50 @@ glm::dmat4 StrictObject::matrix(const std::string& key) {
 }
 
 std::string StrictObject::path(const std::string& key) const {
-  return path_.empty() ? key : path_ + "." + key;
+  return path_.empty() ? shortened(key) : path_ + "." + shortened(key);
 }
 
 std::string StrictObject::subject(const std::string& key) const {
   return "file " + file_ + ", " + path(key);
 }
 
-nlohmann::json read_json_file(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError("file " + file, "must be an existing JSON file", "missing");
+nlohmann::json parse_json(const std::string& text, const std::string& file) {
+  constexpr int kDeepest =
+      32;  // formats have 7; what reads or prints a value calls itself for each
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  using Event = nlohmann::json::parse_event_t;
+  const auto check = [&](int depth, Event event, const nlohmann::json& value) {
+    if (depth > kDeepest)
+      throw InputError("file " + file,
+                       "must be nested " + std::to_string(kDeepest) + " deep at most", "deeper");
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::object_end) keys.pop_back();
+    if (event == Event::key && !keys.back().insert(value.get<std::string>()).second)
+      throw InputError("file " + file + ", key " + json_excerpt(value),
+                       "must stand once in its object", "there twice");
+    return true;
+  };
   try {
-    return nlohmann::json::parse(stream);
+    return nlohmann::json::parse(text, check);
   } catch (const nlohmann::json::exception& error) {
-    throw InputError("file " + file, "must be valid JSON", std::string("not: ") + error.what());
+    throw InputError("file " + file, "must be valid JSON", "not: " + shortened(error.what(), 200));
   }
 }
 
+nlohmann::json read_json_file(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError("file " + file, "must be an existing JSON file", "missing");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_json(text.str(), file);
+}
+
 std::string json_excerpt(const nlohmann::json& json) {
-  constexpr std::size_t kLongest = 60;
-  const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+  return shortened(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::string shortened(const std::string& text, std::size_t longest) {
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
 
 }  // namespace holdfast

@@ -44,10 +44,15 @@ class StrictObject {
   std::set<std::string> asked_;
 };
 
-/// Parses a JSON file. Throws InputError naming the file if it is missing or is no JSON.
+/// Parses JSON text; `file` names it in messages. Throws InputError if it is no JSON, has a key
+/// twice in one object, or is nested deeper than 32.
+nlohmann::json parse_json(const std::string& text, const std::string& file);
+/// Parses a JSON file. Throws InputError also if it is missing.
 nlohmann::json read_json_file(const std::string& file);
 
 /// A value in an error message: its JSON text, shortened.
 std::string json_excerpt(const nlohmann::json& json);
+/// Text in an error message: no longer than `longest` bytes, and dots.
+std::string shortened(const std::string& text, std::size_t longest = 60);
 
 }  // namespace holdfast
