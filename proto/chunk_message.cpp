@@ -23,6 +23,7 @@ constexpr std::uint8_t kOffsetTag = tag(v1::PlaneChunk::kOffsetFieldNumber, kVar
 constexpr std::uint8_t kLastTag = tag(v1::PlaneChunk::kLastFieldNumber, kVarint);
 constexpr std::uint8_t kDataTag = tag(v1::PlaneChunk::kDataFieldNumber, kBytes);
 constexpr std::uint8_t kPlainTag = tag(v1::PlaneChunk::kPlainBytesFieldNumber, kVarint);
+constexpr std::uint8_t kSharedTag = tag(v1::PlaneChunk::kSharedBytesFieldNumber, kVarint);
 
 /// A few bytes of a message, written one after the other.
 class Head {
@@ -45,7 +46,8 @@ class Head {
   grpc::Slice slice() const { return grpc::Slice(bytes_.data(), size_); }
 
  private:
-  std::array<std::uint8_t, 64> bytes_;  // 5 tags, 5 varints of at most 10 bytes and the outer ones
+  std::array<std::uint8_t, 64>
+      bytes_;  // 6 tags, 4 varints of at most 5 bytes, one of 10, the outer ones
   std::size_t size_ = 0;
 };
 
@@ -113,18 +115,25 @@ grpc::ByteBuffer chunk_message(const ChunkFields& fields, const grpc::Slice& dat
   inner.field(kLastTag, fields.last ? 1 : 0);
   inner.field(kDataTag, data.size());  // without data there is no length either
   tail.field(kPlainTag, fields.plain_bytes);
+  tail.field(kSharedTag, fields.shared_bytes);
   head.byte(kChunkTag);
   head.varint(inner.size() + data.size() + tail.size());
   head.append(inner);
+  if (data.size() == 0) {
+    head.append(tail);
+    const grpc::Slice all = head.slice();
+    return grpc::ByteBuffer(&all, 1);
+  }
   const grpc::Slice slices[] = {head.slice(), data, tail.slice()};
   return grpc::ByteBuffer(slices, tail.size() > 0 ? 3 : 2);
 }
 
-const ChunkView* ChunkReader::read(const grpc::ByteBuffer& message) {
+ChunkView* ChunkReader::read(const grpc::ByteBuffer& message) {
   slices_.clear();
   chunk_.fields = {};
   chunk_.data.clear();
   chunk_.data_bytes = 0;
+  chunk_.shared = false;
   return message.Dump(&slices_).ok() && read_fields() ? &chunk_ : nullptr;
 }
 
@@ -150,6 +159,8 @@ bool ChunkReader::read_fields() {
       fields.plane = static_cast<std::uint32_t>(*value);
     } else if (field_tag == kPlainTag && *value >> 32 == 0) {
       fields.plain_bytes = static_cast<std::uint32_t>(*value);
+    } else if (field_tag == kSharedTag && *value >> 32 == 0) {
+      fields.shared_bytes = static_cast<std::uint32_t>(*value);
     } else {
       return false;
     }

@@ -20,6 +20,7 @@ struct ChunkFields {
   std::uint64_t offset = 0;
   bool last = false;
   std::uint32_t plain_bytes = 0;
+  std::uint32_t shared_bytes = 0;
   friend bool operator==(const ChunkFields&, const ChunkFields&) = default;
 };
 
@@ -32,12 +33,13 @@ struct ChunkView {
   ChunkFields fields;
   std::vector<std::string_view> data;
   std::size_t data_bytes = 0;
+  bool shared = false;  ///< data is where the other end may write: it must be read once only
 };
 
 /// A chunk that the generated class has read; refers to its data. Valid as long as `chunk`.
 template <class PlaneChunk>
 ChunkView view_of(const PlaneChunk& chunk) {
-  return {{chunk.plane(), chunk.offset(), chunk.last(), chunk.plain_bytes()},
+  return {{chunk.plane(), chunk.offset(), chunk.last(), chunk.plain_bytes(), chunk.shared_bytes()},
           {chunk.data()},
           chunk.data().size()};
 }
@@ -48,7 +50,7 @@ class ChunkReader {
   /// The chunk in `message`, valid until the next call; null if there is none, or if it is not
   /// written in the usual way (a field twice, unknown fields, and so on): the generated class
   /// knows.
-  const ChunkView* read(const grpc::ByteBuffer& message);
+  ChunkView* read(const grpc::ByteBuffer& message);
 
  private:
   bool read_fields();

@@ -1,6 +1,7 @@
 #include "proto/chunk_writer.h"
 
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 
 namespace holdfast::wire {
@@ -47,29 +48,53 @@ ChunkWriter::ChunkWriter() : buffers_(std::make_shared<Buffers>()) {}
 
 std::size_t ChunkWriter::write(const Plane& plane, PlaneCoding coding, std::uint32_t number,
                                std::size_t offset, const Owner& owner, OutgoingMessage& message) {
-  const std::size_t size = plane_bytes(plane, coding.format);
   ChunkFields fields;
   fields.plane = number;
   fields.offset = offset;
   std::size_t bytes = 0;
   grpc::Slice data;
-  if (lies_as_on_the_wire(plane, coding)) {
-    bytes = std::min(kMaxChunkBytes, size - offset);
-    data = slice_of(reinterpret_cast<const std::byte*>(plane.words(0).data) + offset, bytes, owner);
-  } else {
-    std::shared_ptr<std::string> buffer(
-        buffers_->take().release(),
-        [pool = buffers_](std::string* used) { pool->give(std::unique_ptr<std::string>(used)); });
-    bytes = coder_.encode(plane, coding, offset, *buffer);
-    const auto* const made = reinterpret_cast<const std::byte*>(buffer->data());
-    const std::size_t made_bytes = buffer->size();
-    data = slice_of(made, made_bytes, std::move(buffer));
-  }
-  fields.last = offset + bytes == size;
+  message.shared_bytes = 0;
+  if (cells_ != nullptr && !cells_->full())
+    message.shared_bytes = in_cell(plane, coding, offset, bytes);
+  else
+    data = in_stream(plane, coding, offset, owner, bytes);
+  fields.shared_bytes = static_cast<std::uint32_t>(message.shared_bytes);
+  fields.last = offset + bytes == plane_bytes(plane, coding.format);
   if (coding.codec != Codec::kNone) fields.plain_bytes = static_cast<std::uint32_t>(bytes);
   message.bytes = chunk_message(fields, data);
-  message.plane_bytes = data.size();
+  message.plane_bytes = data.size() + message.shared_bytes;
   return fields.last ? 0 : offset + bytes;
+}
+
+/// The piece as it goes into a message; `bytes`: what it holds of the plane.
+grpc::Slice ChunkWriter::in_stream(const Plane& plane, PlaneCoding coding, std::size_t offset,
+                                   const Owner& owner, std::size_t& bytes) {
+  if (lies_as_on_the_wire(plane, coding)) {
+    bytes = std::min(kMaxChunkBytes, plane_bytes(plane, coding.format) - offset);
+    return slice_of(reinterpret_cast<const std::byte*>(plane.words(0).data) + offset, bytes, owner);
+  }
+  std::shared_ptr<std::string> buffer(
+      buffers_->take().release(),
+      [pool = buffers_](std::string* used) { pool->give(std::unique_ptr<std::string>(used)); });
+  bytes = coder_.encode(plane, coding, offset, *buffer);
+  const auto* const made = reinterpret_cast<const std::byte*>(buffer->data());
+  const std::size_t made_bytes = buffer->size();
+  return slice_of(made, made_bytes, std::move(buffer));
+}
+
+/// The same in the next cell; the bytes of the piece there.
+std::size_t ChunkWriter::in_cell(const Plane& plane, PlaneCoding coding, std::size_t offset,
+                                 std::size_t& bytes) {
+  std::size_t size = 0;
+  if (lies_as_on_the_wire(plane, coding)) {
+    size = bytes = std::min(kMaxChunkBytes, plane_bytes(plane, coding.format) - offset);
+    std::memcpy(cells_->cell(), reinterpret_cast<const std::byte*>(plane.words(0).data) + offset,
+                size);
+  } else {
+    bytes = coder_.encode_shared(plane, coding, offset, cells_->cell(), size);
+  }
+  cells_->advance();
+  return size;
 }
 
 }  // namespace holdfast::wire

@@ -46,8 +46,22 @@ std::size_t PlaneCoder::encode(const Plane& plane, PlaneCoding coding, std::size
   return bytes;
 }
 
+std::size_t PlaneCoder::encode_shared(const Plane& plane, PlaneCoding coding, std::size_t offset,
+                                      std::byte* out, std::size_t& size) {
+  if (coding.codec == Codec::kNone) {
+    size = std::min(kMaxChunkBytes, plane_bytes(plane, coding.format) - offset);
+    read_plane_bytes(plane, coding.format, offset, size, out);
+    return size;
+  }
+  const std::size_t bytes =
+      encode(plane, coding, offset, joined_);  // codecs may read what they made
+  size = joined_.size();
+  std::memcpy(out, joined_.data(), size);
+  return bytes;
+}
+
 bool PlaneCoder::decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
-                        std::span<const std::string_view> data) {
+                        std::span<const std::string_view> data, bool shared) {
   assert(bytes <= kMaxChunkBytes);
   std::size_t size = 0;
   for (const std::string_view piece : data) size += piece.size();
@@ -58,7 +72,7 @@ bool PlaneCoder::decode(Plane& plane, PlaneCoding coding, std::size_t offset, st
     }
     return true;
   }
-  const std::string_view block = joined(data);
+  const std::string_view block = joined(data, shared);
   const auto* in = reinterpret_cast<const std::byte*>(block.data());
   if (size != bytes) {
     std::byte* const plain = this->plain(2 * bytes);
@@ -71,9 +85,9 @@ bool PlaneCoder::decode(Plane& plane, PlaneCoding coding, std::size_t offset, st
   return true;
 }
 
-/// The pieces in one.
-std::string_view PlaneCoder::joined(std::span<const std::string_view> data) {
-  if (data.size() == 1) return data.front();
+/// The pieces in one, in memory of our own if they are shared.
+std::string_view PlaneCoder::joined(std::span<const std::string_view> data, bool shared) {
+  if (data.size() == 1 && !shared) return data.front();
   joined_.clear();
   for (const std::string_view piece : data) joined_ += piece;
   return joined_;

@@ -33,6 +33,10 @@ class PlaneCoder {
   /// Makes `data` the block of the plane that begins at `offset` of its bytes, with room for its
   /// plain bytes. Returns how many bytes of the plane it holds.
   std::size_t encode(const Plane& plane, PlaneCoding coding, std::size_t offset, std::string& data);
+  /// The same to memory that others may change meanwhile, which is written only: kMaxChunkBytes at
+  /// `out`. `size`: of the block.
+  std::size_t encode_shared(const Plane& plane, PlaneCoding coding, std::size_t offset,
+                            std::byte* out, std::size_t& size);
 
   /// Writes the block `data`, which holds `bytes` bytes of the plane at `offset`, to the plane:
   /// both as in write_plane_bytes, `bytes` at most kMaxChunkBytes (asserted). False, with the plane
@@ -43,15 +47,16 @@ class PlaneCoder {
     return decode(plane, coding, offset, bytes, std::span(&data, 1));
   }
   /// The same for a block that came in pieces, at most kMaxChunkBytes together (asserted).
+  /// `shared`: others may change the data meanwhile: each byte is read once.
   bool decode(Plane& plane, PlaneCoding coding, std::size_t offset, std::size_t bytes,
-              std::span<const std::string_view> data);
+              std::span<const std::string_view> data, bool shared = false);
 
   /// Blocks of scratch that it may come to hold.
   static constexpr std::size_t kEncodeBlocks = 2, kDecodeBlocks = 3;
 
  private:
   std::byte* plain(std::size_t bytes);
-  std::string_view joined(std::span<const std::string_view> data);
+  std::string_view joined(std::span<const std::string_view> data, bool shared);
 
   BlockCodec codec_;
   std::vector<std::byte> plain_;

@@ -9,16 +9,15 @@ void AnswerWriter::add(FrameSlot& slot, const SessionConfig& config) {
   answers_.push_back({&slot, &config});
 }
 
-const grpc::ByteBuffer* AnswerWriter::next(const Sent& sent) {
-  if (!notices_.empty() && !made_) {
-    wire::write_message(notices_.front(), message_.bytes);
-    notices_.pop_front();
-    return &message_.bytes;
+const wire::OutgoingMessage* AnswerWriter::next(const Sent& sent) {
+  if (urgent() && !made_) {
+    write_urgent();
+    return &message_;
   }
   if (answers_.empty()) return nullptr;
   begin();
   if (!made_) encode_ahead();
-  if (*std::exchange(made_, {})) return &message_.bytes;
+  if (*std::exchange(made_, {})) return &message_;
   FrameSlot& slot = *answers_.front().slot;
   sender_.reset();
   message_ = {};  // lets go of the answer
@@ -27,8 +26,20 @@ const grpc::ByteBuffer* AnswerWriter::next(const Sent& sent) {
   return needs_encoding() ? nullptr : next(sent);
 }
 
+void AnswerWriter::write_urgent() {
+  message_.plane_bytes = message_.shared_bytes = 0;
+  if (!notices_.empty()) {
+    wire::write_message(notices_.front(), message_.bytes);
+    notices_.pop_front();
+    return;
+  }
+  v1::DenoiseResponse response;
+  response.mutable_shared_read()->set_cells(*std::exchange(read_cells_, {}));
+  wire::write_message(response, message_.bytes);
+}
+
 bool AnswerWriter::needs_encoding() {
-  return notices_.empty() && !answers_.empty() && !made_ && begin().config->wire != "exact";
+  return !urgent() && !answers_.empty() && !made_ && begin().config->wire != "exact";
 }
 
 /// The first answer, with its sender.
@@ -49,6 +60,7 @@ std::vector<FrameSlot*> AnswerWriter::drop() {
   sender_.reset();
   made_.reset();
   notices_.clear();
+  read_cells_.reset();
   std::vector<FrameSlot*> slots;
   for (const Entry& entry : answers_) slots.push_back(entry.slot);
   answers_.clear();

@@ -25,14 +25,28 @@ class AnswerWriter {
   /// dropped.
   void add(FrameSlot& slot, const SessionConfig& config);
 
+  /// From now on answers use these cells, which outlive the writer.
+  void use(wire::CellWriter& cells) {
+    cells_ = &cells;
+    chunks_.use(&cells);
+  }
+  /// The client has to be told that so many cells were read; only the last count is sent.
+  void tell_read(std::uint64_t cells) { read_cells_ = cells; }
+
   /// The next message, valid until the next call; null if there is nothing to send. The message
   /// before it has been written, which ends an answer with its last one.
-  const grpc::ByteBuffer* next(const Sent& sent);
+  const wire::OutgoingMessage* next(const Sent& sent);
+  /// True if the next message may want a cell and none is free; made all the same, its bytes travel
+  /// in it.
+  bool waits_for_cell() const {
+    return cells_ != nullptr && cells_->full() && !urgent() && !made_ && !answers_.empty();
+  }
 
   /// True if the next message takes more than a copy: it is then made by `encode_ahead`, before
   /// `next` is called.
   bool needs_encoding();
-  /// Makes the next message. `notice`, `add` and `empty` may be called meanwhile, nothing else.
+  /// Makes the next message. `notice`, `tell_read`, `add` and `empty` may be called meanwhile,
+  /// nothing else.
   void encode_ahead();
 
   /// Drops what is not sent; returns the slots.
@@ -45,10 +59,15 @@ class AnswerWriter {
     const SessionConfig* config;
   };
   const Entry& begin();
+  /// Something goes before all answers.
+  bool urgent() const { return !notices_.empty() || read_cells_; }
+  void write_urgent();
 
   std::deque<v1::DenoiseResponse> notices_;
-  std::deque<Entry> answers_;  ///< the first of which is being sent
-  wire::ChunkWriter chunks_;   ///< of the sender
+  std::optional<std::uint64_t> read_cells_;  ///< to be told
+  std::deque<Entry> answers_;                ///< the first of which is being sent
+  wire::CellWriter* cells_ = nullptr;
+  wire::ChunkWriter chunks_;  ///< of the sender
   std::optional<ResultSender> sender_;
   FrameSlot* encoding_ = nullptr;  ///< of the sender
   wire::OutgoingMessage message_;

@@ -5,6 +5,7 @@
 #include "core/frame/error.h"
 #include "server/listen_address.h"
 #include "server/log.h"
+#include "server/shared_memory_socket.h"
 
 namespace holdfast::server {
 namespace {
@@ -40,6 +41,10 @@ void check_config(const ServerConfig& config) {
   make_logger(config.log_level);
   check_address_form(config.listen);
   check_local("listen address", config.listen, config.allow_remote);
+  if (!config.shared_memory.empty()) check_shared_memory_path(config.shared_memory);
+  if (!config.shared_memory.empty() && config.listen == "unix:" + config.shared_memory)
+    throw InputError("shared memory socket", "must be another than the listen address",
+                     config.shared_memory);
   if (!config.admin.empty()) {
     check_address_form(config.admin);
     if (config.admin.starts_with("unix:"))

@@ -35,11 +35,12 @@ struct TlsConfig {
 /// The whole configuration of a server. Every value has a default that works.
 struct ServerConfig {
   std::string listen = "127.0.0.1:50051";  ///< host:port (port 0 = any free one) or unix:PATH
-  std::string admin;                       ///< host:port of the admin port; empty = none
-  bool admin_previews = false;             ///< the admin port shows pictures of sessions
-  bool allow_remote = false;               ///< addresses beyond this machine may be listened on
-  int threads = 0;                         ///< threads that filter; 0 = one for each core
-  std::string log_level = "info";          ///< trace, debug, info, warn, error, off
+  std::string shared_memory;       ///< path of the side socket for shared memory; empty = none
+  std::string admin;               ///< host:port of the admin port; empty = none
+  bool admin_previews = false;     ///< the admin port shows pictures of sessions
+  bool allow_remote = false;       ///< addresses beyond this machine may be listened on
+  int threads = 0;                 ///< threads that filter; 0 = one for each core
+  std::string log_level = "info";  ///< trace, debug, info, warn, error, off
   std::chrono::milliseconds drain_deadline{10000};    ///< for frames in flight at shutdown
   std::chrono::milliseconds keepalive{10000};         ///< a silent peer is asked after this
   std::chrono::milliseconds keepalive_timeout{5000};  ///< and lost if it does not answer in this

@@ -38,9 +38,10 @@ void DenoiseStream::OnReadDone(bool ok) {
     try {
       const std::size_t bytes = received_.Length();
       state_.metrics.received_bytes(bytes);
+      shared_bytes_ = 0;
       const bool more = handle_message();
       if (closing_ && assembler_ && !assembler_->open()) end(status_);
-      if (rates_) hold_reading(rates_->count_bytes(bytes, Clock::now()));
+      if (rates_) hold_reading(rates_->count_bytes(bytes + shared_bytes_, Clock::now()));
       if (more) read_on();
     } catch (...) {
       refuse(std::current_exception());
@@ -56,7 +57,7 @@ void DenoiseStream::OnReadDone(bool ok) {
 
 /// True if the next message may be read.
 bool DenoiseStream::handle_message() {
-  if (const wire::ChunkView* const chunk = chunks_.read(received_);
+  if (wire::ChunkView* const chunk = chunks_.read(received_);
       chunk != nullptr && session_ && assembler_->open()) {
     decode(*chunk);
     return true;
@@ -80,20 +81,20 @@ bool DenoiseStream::handle_request() {
   if (kind == Message::kHello) throw InputError("Hello", "must be sent once", "sent again");
   if (kind == Message::MESSAGE_NOT_SET)
     throw InputError("message", "must be Hello, FrameBegin, PlaneChunk or FrameEnd", "empty");
+  if (kind == Message::kSharedRead) {
+    note_read(request_.shared_read());
+    return true;
+  }
   if (!assembler_->open())
     throw InputError(kind == Message::kPlaneChunk ? "PlaneChunk" : "FrameEnd",
                      "must be inside a frame", "outside");
-  if (kind == Message::kPlaneChunk)
-    decode(wire::view_of(request_.plane_chunk()));
-  else
+  if (kind == Message::kPlaneChunk) {
+    wire::ChunkView chunk = wire::view_of(request_.plane_chunk());
+    decode(chunk);
+  } else {
     post(assembler_->end(request_.frame_end()));
+  }
   return true;
-}
-
-void DenoiseStream::decode(const wire::ChunkView& chunk) {
-  const Clock::time_point start = Clock::now();
-  assembler_->add(chunk);
-  open_->decode += Clock::now() - start;
 }
 
 void DenoiseStream::handle_hello(const v1::Hello& hello) {
@@ -113,8 +114,10 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   welcome.set_resumed(counters.last_frame.has_value());
   welcome.set_last_frame_index(counters.last_frame.value_or(0));
   welcome.set_epoch(counters.epoch);
-  state_.log->info("event=stream_open session={} resumed={} taken_over={} last_acked={}",
-                   session_->id(), welcome.resumed(), heir_,
+  attach_cells(hello);
+  welcome.set_shared_memory(cells_.has_value());
+  state_.log->info("event=stream_open session={} resumed={} taken_over={} shared={} last_acked={}",
+                   session_->id(), welcome.resumed(), heir_, welcome.shared_memory(),
                    hello.has_last_acked_frame() ? hello.last_acked_frame() : -1);
   write_on();
 }
@@ -136,6 +139,10 @@ bool DenoiseStream::handle_frame_begin(const v1::FrameBegin& begin) {
 void DenoiseStream::begin_frame(const v1::FrameBegin& begin, FrameSlot& slot) {
   const auto refusal = take_change(state_, session_, begin, config_, slot.reserved);
   slot.config = config_;
+  if (slot.frame.planes.size() == 0 && !planes_.empty()) {
+    slot.frame.planes = std::move(planes_.back());
+    planes_.pop_back();
+  }
   assembler_->follow(*config_);
   assembler_->begin(begin, slot);
   if (refusal) slot.error = refusal;
@@ -211,6 +218,7 @@ void DenoiseStream::filter(FrameSlot& slot) {
   if (wanted && state_.config.admin_previews) show_frame(slot);
   if (wanted) state_.metrics.filtered(slot);
   std::unique_lock lock(mutex_);
+  if (slot.frame.planes.size() > 0) planes_.push_back(std::exchange(slot.frame.planes, {}));
   if (broken_) {
     release(slot);
   } else {
@@ -318,9 +326,11 @@ bool DenoiseStream::ready_to_finish() {
 }
 
 void DenoiseStream::unlock_and_finish(std::unique_lock<std::mutex>& lock) {
+  if (cells_ && !hears()) write_on();  // no SharedRead will come for what waits
   const bool now = ready_to_finish();
   if (now) {
     finished_ = true;
+    discard_cells();
     if (session_) {
       state_.sessions.detach(*session_, hold_);
       state_.log->info("event=stream_end session={} broken={} status={}", session_->id(), broken_,

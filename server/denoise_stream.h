@@ -10,6 +10,7 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/shared_cells.h"
 #include "server/answer_writer.h"
 #include "server/frame_assembler.h"
 #include "server/service_state.h"
@@ -64,6 +65,8 @@ class DenoiseStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grp
   bool handle_message();
   bool handle_request();
   void handle_hello(const v1::Hello& hello);
+  /// True while messages of the client are read, or will be without more of ours.
+  bool hears() const { return !stalled_ && !read_due_ && !read_all_ && !broken_; }
   bool handle_frame_begin(const v1::FrameBegin& begin);
   FrameSlot* free_slot();
   void begin_frame(const v1::FrameBegin& begin, FrameSlot& slot);
@@ -72,10 +75,13 @@ class DenoiseStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grp
   void post(FrameSlot& slot);
   void read_on();
   void write_on();
-  const grpc::ByteBuffer* next_message();
+  const wire::OutgoingMessage* next_message();
   void release(FrameSlot& slot);
   void drop_unsent();
-  void decode(const wire::ChunkView& chunk);
+  void decode(wire::ChunkView& chunk);
+  void attach_cells(const v1::Hello& hello);
+  void note_read(const v1::SharedRead& read);
+  void discard_cells();
   void refuse(std::exception_ptr error);
   void end(const grpc::Status& status);
   [[nodiscard]] bool ready_to_finish();
@@ -105,6 +111,9 @@ class DenoiseStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grp
   FrameSlot* open_ = nullptr;  ///< of the frame that the assembler has open
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   std::vector<FrameSlot*> free_;
+  std::vector<PlaneSet> planes_;            ///< of frames that were filtered, for those that come
+  std::optional<wire::SharedCells> cells_;  ///< if the client has shared memory
+  std::size_t shared_bytes_ = 0;            ///< that came there with the message at hand
   AnswerWriter writer_;
   grpc::ByteBuffer received_;
   wire::ChunkReader chunks_;

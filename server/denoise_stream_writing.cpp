@@ -18,18 +18,19 @@ void DenoiseStream::OnWriteDone(bool ok) {
 
 void DenoiseStream::write_on() {
   if (writing_ || broken_ || finished_) return;
-  const grpc::ByteBuffer* const message = next_message();
+  if (writer_.waits_for_cell() && hears()) return;  // SharedRead is to come
+  const wire::OutgoingMessage* const message = next_message();
   writing_ = message != nullptr || writer_.needs_encoding();
   if (message != nullptr) {
-    state_.metrics.sent_bytes(message->Length());
-    StartWrite(message);
+    state_.metrics.sent_bytes(message->bytes.Length() + message->shared_bytes);
+    StartWrite(&message->bytes);
   } else if (writing_) {
     state_.encoders.post([self = shared_from_this()] { self->encode(); });
   }
 }
 
 /// Null if there is nothing to send, or nothing before it is encoded.
-const grpc::ByteBuffer* DenoiseStream::next_message() {
+const wire::OutgoingMessage* DenoiseStream::next_message() {
   if (writer_.needs_encoding()) return nullptr;
   return writer_.next([this](FrameSlot& slot) {
     const Clock::time_point now = Clock::now();

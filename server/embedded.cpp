@@ -34,6 +34,7 @@ ServerConfig config_for(const std::filesystem::path& dir, int threads, const std
   ServerConfig config;
   config.listen =
       link == EmbeddedServer::Link::kTcp ? "127.0.0.1:0" : "unix:" + (dir / "socket").string();
+  if (link == EmbeddedServer::Link::kSharedMemory) config.shared_memory = (dir / "memory").string();
   config.threads = threads;
   config.log_level = level;
   return config;
@@ -44,8 +45,9 @@ ServerConfig config_for(const std::filesystem::path& dir, int threads, const std
 class EmbeddedServer::Impl {
  public:
   Impl(int threads, const std::string& log_level, Link link)
-      : server(config_for(directory.path(), threads, log_level, link)) {}
-  PrivateDirectory directory;
+      : config(config_for(directory.path(), threads, log_level, link)), server(config) {}
+  const PrivateDirectory directory;
+  const ServerConfig config;
   Server server;
 };
 
@@ -53,5 +55,6 @@ EmbeddedServer::EmbeddedServer(int threads, const std::string& log_level, Link l
     : impl_(std::make_unique<Impl>(threads, log_level, link)) {}
 EmbeddedServer::~EmbeddedServer() = default;
 const std::string& EmbeddedServer::address() const { return impl_->server.address(); }
+const std::string& EmbeddedServer::shared_memory() const { return impl_->config.shared_memory; }
 
 }  // namespace holdfast::server

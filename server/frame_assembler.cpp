@@ -100,12 +100,16 @@ void FrameAssembler::add(const wire::ChunkView& chunk) {
   try {
     write(chunk);
   } catch (...) {
-    slot_->error = frame_error_from(std::current_exception());
+    fail(std::current_exception());
   }
 }
 
+void FrameAssembler::fail(std::exception_ptr error) {
+  if (!slot_->error) slot_->error = frame_error_from(std::move(error));
+}
+
 void FrameAssembler::write(const wire::ChunkView& chunk) {
-  const auto& [number, offset, last, plain_bytes] = chunk.fields;
+  const auto& [number, offset, last, plain_bytes, shared_bytes] = chunk.fields;
   if (number >= progress_.size())
     throw InputError(
         "plane number " + std::to_string(number),
@@ -124,7 +128,8 @@ void FrameAssembler::write(const wire::ChunkView& chunk) {
   if (bytes > progress.size - progress.received)
     throw InputError(name, "must have " + bytes_text(progress.size),
                      "at least " + bytes_text(progress.received + bytes));
-  if (!coder_.decode(*progress.plane, progress.coding, progress.received, bytes, chunk.data))
+  if (!coder_.decode(*progress.plane, progress.coding, progress.received, bytes, chunk.data,
+                     chunk.shared))
     throw InputError("data of a chunk of " + name,
                      "must be " + bytes_text(bytes) + " of " +
                          std::string(wire::codec_name(progress.coding.codec)),

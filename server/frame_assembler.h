@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <vector>
 
 #include "holdfast/v1/denoise_service.pb.h"
@@ -28,6 +29,8 @@ class FrameAssembler {
   void begin(const v1::FrameBegin& message, FrameSlot& slot);
   /// Adds a piece of a plane to the open frame.
   void add(const wire::ChunkView& chunk);
+  /// Makes `error` that of the open frame, unless it has one.
+  void fail(std::exception_ptr error);
   /// Closes the open frame and returns its slot, with an error if it is not complete.
   FrameSlot& end(const v1::FrameEnd& message);
   /// Closes the open frame as incomplete, because `instead` came where FrameEnd had to.

@@ -54,6 +54,9 @@ void add_options(CLI::App& app, ServerConfig& config) {
   app.allow_config_extras(CLI::config_extras_mode::error);
   Knobs knobs(app);
   knobs.value("--listen", config.listen, "host:port (port 0 = any free one) or unix:PATH");
+  knobs.value("--shared-memory", config.shared_memory,
+              "PATH of a socket at which clients of this machine and user get memory for planes; "
+              "empty = none");
   knobs.value("--admin", config.admin,
               "host:port of the live page, /healthz, /readyz and /metrics; empty = none");
   app.add_flag("--admin-previews", config.admin_previews,

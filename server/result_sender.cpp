@@ -17,7 +17,7 @@ bool ResultSender::next(wire::OutgoingMessage& message) {
     v1::DenoiseResponse response;
     write_frame_result(slot_, config_, codings_, *response.mutable_frame_result());
     wire::write_message(response, message.bytes);
-    message.plane_bytes = 0;
+    message.plane_bytes = message.shared_bytes = 0;
     return true;
   }
   if (!has_planes || plane_ == config_.results.size()) return false;

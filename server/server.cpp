@@ -16,6 +16,7 @@
 #include "server/log.h"
 #include "server/session_service.h"
 #include "server/sessions_json.h"
+#include "server/shared_memory_socket.h"
 #include "server/version.h"
 
 namespace holdfast::server {
@@ -79,6 +80,8 @@ class Server::Impl {
       : state_(checked(config), make_logger(config.log_level)),
         session_service_(state_),
         denoise_service_(state_) {
+    if (!config.shared_memory.empty())  // first, so that whoever gets a session can ask for it
+      shared_memory_.emplace(config.shared_memory, state_.shared_memory, state_.log);
     start();
     expiry_.emplace(kExpiryPeriod, [this] {
       if (const int ended = state_.sessions.expire(); ended > 0) expired(ended);
@@ -181,6 +184,7 @@ class Server::Impl {
   DenoiseService denoise_service_;
   std::string address_;
   std::unique_ptr<grpc::Server> server_;
+  std::optional<SharedMemorySocket> shared_memory_;
   std::optional<Timer> expiry_, ticks_;
   std::optional<AdminHttp> admin_;
 };

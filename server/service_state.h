@@ -12,6 +12,7 @@
 #include "server/metrics.h"
 #include "server/scheduler.h"
 #include "server/session_table.h"
+#include "server/shared_memory_offers.h"
 #include "server/stream_registry.h"
 #include "server/token_file.h"
 
@@ -24,6 +25,7 @@ struct ServiceState {
         log(std::move(l)),
         tokens(c.token_file),
         sessions(c.limits),
+        shared_memory(sessions),
         streams(c.max_streams, c.max_waiting_per_address),
         scheduler(c.threads),
         encoders(std::max(1, scheduler.threads() / 4)),
@@ -36,6 +38,7 @@ struct ServiceState {
   Metrics metrics;
   TokenFile tokens;
   SessionTable sessions;
+  SharedMemoryOffers shared_memory;
   StreamRegistry streams;
   Scheduler scheduler;
   Encoders encoders;  ///< as many as lead in the scheduler

@@ -15,7 +15,8 @@ struct SessionConfig {
   std::vector<double> preset_ms;  ///< with a budget: what a frame should take in each preset,
                                   ///< fastest first, up to that of `denoiser`
   std::string wire = "exact";
-  bool latest = false;  ///< a frame is dropped if a newer one waits behind it
+  bool shared_memory = false;  ///< its streams may ask for it
+  bool latest = false;         ///< a frame is dropped if a newer one waits behind it
 };
 
 }  // namespace holdfast::server

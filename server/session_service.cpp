@@ -72,6 +72,7 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     const std::string owner = state_.tokens.check(authorization(*context));
     if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
     SessionConfig asked = session_config_from(*request);
+    asked.shared_memory = request->shared_memory() && !state_.config.shared_memory.empty();
     if (asked.budget_ms > 0) asked.preset_ms = expected_ms(state_.costs.get(), asked.denoiser);
     const auto session = state_.sessions.create(std::move(asked), owner);
     const SessionConfig config = *session->config();
@@ -84,6 +85,7 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     response->set_recipe(config.denoiser.recipe);
     response->set_preset(config.denoiser.preset);
     response->set_memory_bytes(state_.sessions.bytes(*session));
+    response->set_shared_memory(config.shared_memory);
     state_.log->info(
         "event=session_create session={} size={}x{} planes={} recipe={} preset={} "
         "budget_ms={} memory_mib={}",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "proto/chunk_writer.h"
+#include "proto/shared_memory.h"
 
 namespace holdfast::server {
 namespace {
@@ -24,7 +25,8 @@ std::size_t transport_bytes(const SessionConfig& config) {
   const std::size_t sent = largest_piece(config.results, config.denoiser);
   return received * PlaneCoder::kDecodeBlocks + BlockCodec::kDecompressorBytes +
          sent * (ChunkWriter::kKept + (coded ? PlaneCoder::kEncodeBlocks : 0)) +
-         (coded ? BlockCodec::kCompressorBytes : 0);
+         (coded ? BlockCodec::kCompressorBytes : 0) +
+         (config.shared_memory ? wire::SharedLayout{}.bytes() : 0);
 }
 
 }  // namespace holdfast::server

@@ -39,10 +39,15 @@ void add_access_options(CLI::App& command, CLI::Option* server, Access& access) 
       .add_option("--token-file", access.token_file,
                   "file whose first line is the bearer token with which the server admits us")
       ->needs(server);
+  command
+      .add_option("--shared-memory", access.shared_memory,
+                  "PATH of the server's socket for shared memory, if it runs on this machine")
+      ->needs(server);
 }
 
 void use_access(const Access& access, client::SessionOptions& session) {
   session.tls = access.tls;
+  session.shared_memory = access.shared_memory;
   if (!access.token_file.empty()) session.bearer_token = token_from(access.token_file);
 }
 

@@ -51,6 +51,8 @@ class RepeatedFrame {
         frame_(wall(options.width, options.height)),
         session_(session_options(options)),
         resident_before_(server.resident_bytes()) {
+    if (link_ == "shared" && !session_.shared_memory())
+      throw std::runtime_error("the session got no shared memory");
     run(1 + kWarmUp);
     const client::Traffic one = session_.traffic();
     up_ = one.sent / (1 + kWarmUp);
@@ -86,6 +88,7 @@ class RepeatedFrame {
   client::SessionOptions session_options(const TransportOptions& options) const {
     client::SessionOptions out;
     out.address = relay_ ? relay_->address() : server_.address();
+    out.shared_memory = server_.shared_memory();
     out.width = options.width;
     out.height = options.height;
     out.wire = options.wire;
@@ -133,8 +136,9 @@ LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options)
   const double gb = 1e-9 * static_cast<double>(session.up() + session.down()) * options.frames;
   std::vector<double> raw_rate, rate, ratio, raw_cpu, cpu;
   for (int i = 0; i < options.rounds; ++i) {
-    const TransportCost raw = raw_echo(session.link() != "unix", session.up(), session.down(),
-                                       options.frames, session.credits());
+    const TransportCost raw =
+        raw_echo(session.link() == "tcp" || session.link() == "delayed", session.up(),
+                 session.down(), options.frames, session.credits());
     const TransportCost own = session.measure(options.frames);
     raw_rate.push_back(gb / raw.seconds);
     rate.push_back(gb / own.seconds);
@@ -150,7 +154,9 @@ LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options)
 
 TransportResult run_transport_bench(const TransportOptions& options) {
   // Before gRPC has threads here.
-  const ServerChild tcp_server(true), unix_server(false), delayed_server(true);
+  using enum EmbeddedServer::Link;
+  const ServerChild tcp_server(kTcp), unix_server(kUnix), shared_server(kSharedMemory),
+      delayed_server(kTcp);
   TransportResult result;
   result.options = options;
   const auto measure = [&](const char* link, const ServerChild& server) {
@@ -161,6 +167,7 @@ TransportResult run_transport_bench(const TransportOptions& options) {
   };
   measure("tcp", tcp_server);
   measure("unix", unix_server);
+  measure("shared", shared_server);
   if (options.delay_ms > 0) measure("delayed", delayed_server);
   return result;
 }

@@ -19,7 +19,8 @@ struct TransportOptions {
 
 /// One kind of link, as medians over rounds. Bytes are those of planes, both directions together.
 struct LinkResult {
-  std::string link;  ///< "tcp", "unix", or "delayed", whose plain socket has no delay
+  std::string link;  ///< "tcp", "unix", "shared" (memory, beside a plain unix socket), or
+                     ///< "delayed", whose plain socket has no delay
   double raw_gb_per_s = 0, session_gb_per_s = 0;
   double ratio = 0;                                       ///< session over raw, of the same round
   double raw_cpu_s_per_gb = 0, session_cpu_s_per_gb = 0;  ///< both ends

@@ -9,13 +9,15 @@ namespace holdfast::cli {
 /// `address` through gRPC as they reach any other.
 class EmbeddedServer {
  public:
-  enum class Link { kUnix, kTcp };
+  enum class Link { kUnix, kTcp, kSharedMemory };
 
   /// `threads` that filter; 0 = one for each core. Over a unix socket, or over the loopback
-  /// address.
+  /// address; kSharedMemory: over a unix socket, with shared memory for those who ask for it.
   explicit EmbeddedServer(int threads, Link link = Link::kUnix);
   ~EmbeddedServer();
   const std::string& address() const;
+  /// Where to ask for shared memory; empty if there is none.
+  const std::string& shared_memory() const;
 
  private:
   class Impl;

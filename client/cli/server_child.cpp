@@ -10,18 +10,17 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "client/cli/embedded_server.h"
-
 namespace holdfast::cli {
 namespace {
 
-/// The life of the child: tells its address, then waits until `stop` is closed elsewhere.
-[[noreturn]] void serve(bool tcp, int told, int stop) {
+/// The life of the child: tells its address and its socket for shared memory, then waits until
+/// `stop` is closed elsewhere.
+[[noreturn]] void serve(EmbeddedServer::Link link, int told, int stop) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
-    const EmbeddedServer server(0, tcp ? EmbeddedServer::Link::kTcp : EmbeddedServer::Link::kUnix);
-    const std::string& address = server.address();
-    if (write(told, address.data(), address.size()) < 0) _exit(1);
+    const EmbeddedServer server(0, link);
+    const std::string text = server.address() + "\n" + server.shared_memory();
+    if (write(told, text.data(), text.size()) < 0) _exit(1);
     close(told);
     char ignored = 0;
     while (read(stop, &ignored, 1) > 0) {
@@ -34,14 +33,14 @@ namespace {
 
 }  // namespace
 
-ServerChild::ServerChild(bool tcp) {
+ServerChild::ServerChild(EmbeddedServer::Link link) {
   int told[2], stop[2];
   if (pipe(told) != 0 || pipe(stop) != 0) throw std::runtime_error("cannot make a pipe");
   pid_ = fork();
   if (pid_ == 0) {
     close(told[0]);
     close(stop[1]);
-    serve(tcp, told[1], stop[0]);
+    serve(link, told[1], stop[0]);
   }
   close(told[1]);
   close(stop[0]);
@@ -50,7 +49,11 @@ ServerChild::ServerChild(bool tcp) {
   for (ssize_t got = 0; pid_ > 0 && (got = read(told[0], buffer, sizeof buffer)) > 0;)
     address_.append(buffer, static_cast<std::size_t>(got));
   close(told[0]);
-  if (!address_.empty()) return;
+  if (const std::size_t end = address_.find('\n'); end != std::string::npos) {
+    shared_memory_ = address_.substr(end + 1);
+    address_.resize(end);
+    return;
+  }
   close(stop_);
   if (pid_ > 0) waitpid(pid_, nullptr, 0);
   throw std::runtime_error("the server to be measured did not start");

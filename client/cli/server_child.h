@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "client/cli/embedded_server.h"
+
 namespace holdfast::cli {
 
 /// An embedded server in a process of its own, so that its time and memory can be told from a
@@ -12,13 +14,15 @@ namespace holdfast::cli {
 /// the object, or with this program.
 class ServerChild {
  public:
-  /// `tcp`: over the loopback address, else over a unix socket. Throws std::runtime_error.
-  explicit ServerChild(bool tcp);
+  /// Throws std::runtime_error.
+  explicit ServerChild(EmbeddedServer::Link link);
   ~ServerChild();
   ServerChild(const ServerChild&) = delete;
   ServerChild& operator=(const ServerChild&) = delete;
 
   const std::string& address() const { return address_; }
+  /// Where to ask for shared memory; empty if there is none.
+  const std::string& shared_memory() const { return shared_memory_; }
   /// CPU time so far, seconds.
   double cpu_seconds() const;
   /// Resident memory now, and the most there ever was, bytes.
@@ -30,7 +34,7 @@ class ServerChild {
 
   pid_t pid_ = -1;
   int stop_ = -1;  ///< closed to end the process
-  std::string address_;
+  std::string address_, shared_memory_;
 };
 
 }  // namespace holdfast::cli

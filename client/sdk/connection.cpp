@@ -14,6 +14,7 @@ Connection::Connection(grpc::GenericStub& stub, Exchange& exchange, Config confi
       config_(std::move(config)),
       writer_{config_.wire, {}},
       assembler_(config_.results) {
+  if (config_.shared_memory) cells_.emplace(config_.shared_memory, wire::SharedPart::kInput);
   const std::lock_guard lock(mutex_);  // reactions see a finished object, and wait for it here
   stub.PrepareBidiStreamingCall(&context_, "/holdfast.v1.DenoiseService/Denoise", {}, this);
   v1::DenoiseRequest first;
@@ -65,6 +66,11 @@ void Connection::cancel() {
   if (!ended_) context_.TryCancel();
 }
 
+bool Connection::shared_memory() const {
+  const std::lock_guard lock(mutex_);
+  return welcome_ && cells_.has_value();
+}
+
 // --- reactions -----------------------------------------------------------------------------------
 
 void Connection::OnReadDone(bool ok) {
@@ -91,15 +97,22 @@ void Connection::OnReadDone(bool ok) {
 }
 
 void Connection::handle_message() {
-  const wire::ChunkView* const chunk = chunks_.read(received_);
+  wire::ChunkView* const chunk = chunks_.read(received_);
   if (chunk == nullptr) {
     if (!wire::parse_message(received_, response_))
       throw std::runtime_error("a message that is not a DenoiseResponse");
     handle_response();
     return;
   }
-  exchange_.count(0, chunk->data_bytes);
-  if (assembler_.add(*chunk)) exchange_.answered(assembler_.take());
+  add(*chunk);
+}
+
+void Connection::add(wire::ChunkView& chunk) {
+  wire::find_shared(chunk, cells_ ? &cells_->reader : nullptr);
+  exchange_.count(0, chunk.data_bytes);
+  if (assembler_.add(chunk)) exchange_.answered(assembler_.take());
+  if (!cells_) return;
+  if (const auto read = cells_->reader.due()) read_cells_ = read;
 }
 
 /// The same for a message that is not a chunk, or one that is written in an unusual way.
@@ -108,16 +121,21 @@ void Connection::handle_response() {
   switch (response_.message_case()) {
     case Message::kWelcome:
       welcome_ = true;
+      if (!response_.welcome().shared_memory()) cells_.reset();
+      if (cells_) writer_.chunks.use(&cells_->writer);
       exchange_.opened(static_cast<int>(response_.welcome().credits()), config_.fresh);
       break;
     case Message::kFrameResult:
       if (assembler_.begin(response_.frame_result(), exchange_.answer_size(), exchange_.spare()))
         exchange_.answered(assembler_.take());
       break;
-    case Message::kPlaneChunk:
-      exchange_.count(0, response_.plane_chunk().data().size());
-      if (assembler_.add(wire::view_of(response_.plane_chunk())))
-        exchange_.answered(assembler_.take());
+    case Message::kPlaneChunk: {
+      wire::ChunkView chunk = wire::view_of(response_.plane_chunk());
+      add(chunk);
+      break;
+    }
+    case Message::kSharedRead:
+      if (cells_) cells_->writer.note_read(response_.shared_read().cells());
       break;
     default:
       break;  // Draining: the server ends the stream itself once the frames in flight are answered
@@ -152,7 +170,8 @@ void Connection::write_on() {
     return;
   }
   if (writing_ || ended_ || write_failed_ || writes_done_ || !welcome_) return;
-  has_prepared_ = next_message(prepared_, nullptr);
+  if (write_read_cells()) return;
+  if (!has_prepared_) has_prepared_ = next_message(prepared_, nullptr);
   start_write();
   end_writes();
 }
@@ -161,6 +180,7 @@ void Connection::write_on() {
 /// now. Takes `lock`, if given, off while it encodes.
 bool Connection::next_message(wire::OutgoingMessage& message, std::unique_lock<std::mutex>* lock) {
   for (;;) {
+    if (cells_ && cells_->writer.full()) return false;  // SharedRead will come
     if (!sender_) {
       std::optional<OutgoingFrame> frame = exchange_.next();
       if (!frame) return false;
@@ -176,7 +196,7 @@ bool Connection::next_message(wire::OutgoingMessage& message, std::unique_lock<s
 
 /// Writes the prepared message, if there is one and none is being written.
 void Connection::start_write() {
-  if (!has_prepared_ || writing_ || ended_ || write_failed_) return;
+  if (write_failed_ || write_read_cells() || !has_prepared_ || writing_ || ended_) return;
   request_.Swap(&prepared_.bytes);
   has_prepared_ = false;
   exchange_.count(prepared_.plane_bytes, 0);
@@ -184,10 +204,24 @@ void Connection::start_write() {
   StartWrite(&request_);
 }
 
-/// Ends our side of the stream if everything is written and nothing will follow.
+/// Tells the server which cells of the results may be written again, before all else. True if that
+/// is now being written.
+bool Connection::write_read_cells() {
+  if (!read_cells_ || writing_ || ended_ || writes_done_) return false;
+  v1::DenoiseRequest request;
+  request.mutable_shared_read()->set_cells(*std::exchange(read_cells_, {}));
+  wire::write_message(request, request_);
+  writing_ = true;
+  StartWrite(&request_);
+  return true;
+}
+
+/// Ends our side of the stream if everything is written and nothing will follow, nor any cell of
+/// the results have to be told as read.
 void Connection::end_writes() {
   if (writing_ || has_prepared_ || ended_ || writes_done_ || sender_ || !exchange_.all_sent())
     return;
+  if (cells_ && !exchange_.complete()) return;
   writes_done_ = true;
   StartWritesDone();
 }

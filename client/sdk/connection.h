@@ -14,6 +14,7 @@
 #include "client/sdk/frame_sender.h"
 #include "client/sdk/result_assembler.h"
 #include "holdfast/v1/denoise_service.pb.h"
+#include "proto/shared_cells.h"
 
 namespace holdfast::client {
 
@@ -34,6 +35,7 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
     std::vector<PlaneId> planes, results;
     const wire::WireProfile* wire = &wire::exact_profile();
     bool fresh = false;  ///< the session was made for this stream
+    std::shared_ptr<wire::SharedMemory> shared_memory = nullptr;  ///< that Hello names
   };
 
   /// Starts the stream.
@@ -50,6 +52,8 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
   /// The exchange has something new to send.
   void pump();
   void cancel();
+  /// Planes go through shared memory; known once the stream is open.
+  bool shared_memory() const;
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
@@ -59,6 +63,8 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
   // All of these are called with the mutex held.
   void handle_message();
   void handle_response();
+  void add(wire::ChunkView& chunk);
+  bool write_read_cells();
   void write_on();
   bool next_message(wire::OutgoingMessage& message, std::unique_lock<std::mutex>* lock);
   void start_write();
@@ -71,8 +77,10 @@ class Connection final : public grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::
   grpc::ClientContext context_;
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  PlaneWriter writer_;                 ///< of the sender
-  std::optional<FrameSender> sender_;  ///< of the encoding thread, if there is one
+  std::optional<wire::SharedCells> cells_;   ///< if there is shared memory
+  std::optional<std::uint64_t> read_cells_;  ///< to be told to the server
+  PlaneWriter writer_;                       ///< of the sender
+  std::optional<FrameSender> sender_;        ///< of the encoding thread, if there is one
   ResultAssembler assembler_;
   grpc::ByteBuffer request_, received_;
   wire::ChunkReader chunks_;

@@ -24,7 +24,7 @@ bool FrameSender::next(wire::OutgoingMessage& message) {
     write_frame_begin(out_, planes_, codings_, *request.mutable_frame_begin());
   }
   wire::write_message(request, message.bytes);
-  message.plane_bytes = 0;
+  message.plane_bytes = message.shared_bytes = 0;
   return true;
 }
 

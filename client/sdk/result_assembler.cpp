@@ -37,7 +37,7 @@ bool ResultAssembler::begin(const v1::FrameResult& result, PlaneSize of, PlaneSe
 }
 
 bool ResultAssembler::add(const wire::ChunkView& chunk) {
-  const auto& [number, offset, last, plain_bytes] = chunk.fields;
+  const auto& [number, offset, last, plain_bytes, shared_bytes] = chunk.fields;
   require(output_.has_value(), "a chunk came outside an answer");
   require(number == plane_ && offset == received_,
           "chunks must come in the order of the planes, without gaps");
@@ -49,7 +49,7 @@ bool ResultAssembler::add(const wire::ChunkView& chunk) {
   require(bytes > 0 && bytes % wire::element_bytes(coding.format) == 0 &&
               bytes <= wire::kMaxChunkBytes && bytes <= size - received_,
           "a chunk must lie within its plane");
-  require(coder_.decode(plane, coding, received_, bytes, chunk.data),
+  require(coder_.decode(plane, coding, received_, bytes, chunk.data, chunk.shared),
           "a chunk must be what its codec makes");
   received_ += bytes;
   require(last == (received_ == size), "the last chunk must end its plane");

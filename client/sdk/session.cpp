@@ -70,5 +70,6 @@ const std::vector<PlaneId>& Session::results() const { return impl_->keeper.resu
 const std::string& Session::recipe() const { return impl_->keeper.session().recipe(); }
 const std::string& Session::preset() const { return impl_->keeper.session().preset(); }
 Traffic Session::traffic() const { return impl_->exchange.traffic(); }
+bool Session::shared_memory() const { return impl_->keeper.shared_memory(); }
 
 }  // namespace holdfast::client

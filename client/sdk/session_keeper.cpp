@@ -4,6 +4,7 @@
 
 #include "client/sdk/channel.h"
 #include "client/sdk/convert.h"
+#include "client/sdk/shared_memory.h"
 #include "client/sdk/status.h"
 
 namespace holdfast::client {
@@ -43,6 +44,7 @@ SessionKeeper::SessionKeeper(const SessionOptions& options, Exchange& exchange)
       channel_(make_channel(options)),
       sessions_(channel_),
       denoise_(channel_) {
+  check_shared_memory_path(options.shared_memory);
   create(session_);
   for (const std::string& name : session_.result_planes()) {
     const std::optional<PlaneId> id = plane_from_name(name);
@@ -88,6 +90,7 @@ void SessionKeeper::create(v1::CreateSessionResponse& session) {
   check(options_.address, sessions_.CreateSession(&context, request, &session));
   id_ = session.session_id();
   token_ = session.token();
+  may_share_ = session.shared_memory();
 }
 
 grpc::Status SessionKeeper::open(bool fresh, milliseconds timeout) {
@@ -98,10 +101,15 @@ grpc::Status SessionKeeper::open(bool fresh, milliseconds timeout) {
     hello.set_has_last_acked_frame(true);
     hello.set_last_acked_frame(*last);
   }
+  SharedMemoryOffer offer;
+  if (may_share_) offer = ask_for_shared_memory(options_.shared_memory, id_, token_);
+  hello.set_shared_memory(offer.name);
   auto connection = std::make_unique<Connection>(
-      denoise_, exchange_, Connection::Config{options_.planes, results_, &wire_, fresh}, hello);
+      denoise_, exchange_,
+      Connection::Config{options_.planes, results_, &wire_, fresh, offer.memory}, hello);
   const grpc::Status status = connection->wait_open(timeout);
   if (!status.ok()) return status;
+  shared_memory_ = connection->shared_memory();
   const std::lock_guard lock(mutex_);
   connection_ = std::move(connection);
   if (stopping_) connection_->cancel();

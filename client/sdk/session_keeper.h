@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -36,6 +37,7 @@ class SessionKeeper {
 
   const std::vector<PlaneId>& results() const { return results_; }
   const v1::CreateSessionResponse& session() const { return session_; }
+  bool shared_memory() const { return shared_memory_; }
 
  private:
   void create(v1::CreateSessionResponse& session);
@@ -56,6 +58,8 @@ class SessionKeeper {
   std::string id_, token_;             ///< of the present one
   std::vector<PlaneId> results_;
   bool removed_ = false;
+  bool may_share_ = false;                   ///< the present session was made so
+  std::atomic<bool> shared_memory_ = false;  ///< the present stream has it
 
   std::mutex mutex_;  ///< of the two below; taken before that of the connection
   std::condition_variable wake_;

@@ -45,12 +45,10 @@ inline std::vector<PlaneSet> direct(const DenoiserConfig& config,
 }
 
 /// The same through a server, as fast as credits allow.
-inline std::vector<PlaneSet> served(const server::Server& server, const DenoiserConfig& config,
-                                    const std::vector<Frame>& frames,
-                                    const std::string& wire = "exact") {
-  client::SessionOptions options = session_options(server, config);
-  options.wire = wire;
+inline std::vector<PlaneSet> served(const client::SessionOptions& options,
+                                    const std::vector<Frame>& frames) {
   client::Session session(options);
+  EXPECT_EQ(session.shared_memory(), !options.shared_memory.empty());
   std::thread submitter([&] {
     for (const Frame& frame : frames)  // not owned: the frames outlive the session
       session.submit(std::shared_ptr<const Frame>(std::shared_ptr<void>(), &frame));
@@ -64,6 +62,13 @@ inline std::vector<PlaneSet> served(const server::Server& server, const Denoiser
   submitter.join();
   session.close();
   return results;
+}
+inline std::vector<PlaneSet> served(const server::Server& server, const DenoiserConfig& config,
+                                    const std::vector<Frame>& frames,
+                                    const std::string& wire = "exact") {
+  client::SessionOptions options = session_options(server, config);
+  options.wire = wire;
+  return served(options, frames);
 }
 
 /// Both runs gave the same planes with the same bits.

@@ -39,6 +39,7 @@ v1::PlaneChunk chunk_of(const ChunkFields& fields, const std::string& data) {
   chunk.set_last(fields.last);
   chunk.set_data(data);
   chunk.set_plain_bytes(fields.plain_bytes);
+  chunk.set_shared_bytes(fields.shared_bytes);
   return chunk;
 }
 
@@ -49,7 +50,8 @@ std::vector<ChunkFields> many_fields() {
     for (const std::uint64_t offset : {0ull, 127ull, 128ull, 1ull << 20, 1ull << 35, ~0ull})
       for (const bool last : {false, true})
         for (const std::uint32_t plain : {0u, 4u, 1u << 20, 0xffffffffu})
-          out.push_back({plane, offset, last, plain});
+          for (const std::uint32_t shared : {0u, 128u, 0xffffffffu})
+            out.push_back({plane, offset, last, plain, shared});
   return out;
 }
 

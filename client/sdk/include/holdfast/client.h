@@ -51,6 +51,10 @@ struct SessionOptions {
   /// Answered frames that the session holds, to warm the history of a new server with them if the
   /// old one is lost; 0 = none.
   int rewarm_frames = 4;
+  /// Path of the server's side socket for shared memory (holdfast-server --shared-memory), for a
+  /// server on the same machine and of the same user: planes then go through memory that both map.
+  /// Empty = none. Where none is to be had all goes through the stream; see Session::shared_memory.
+  std::string shared_memory;
   TlsFiles tls;
   std::string bearer_token;  ///< with which the server admits us; empty = none
 
@@ -126,7 +130,7 @@ struct FrameOutput {
   bool deadline_passed = false;  ///< before it could be filtered; see SessionOptions
 };
 
-/// Plane bytes that crossed the wire.
+/// Plane bytes that crossed the wire, or went through shared memory.
 struct Traffic {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
@@ -194,6 +198,8 @@ class Session {
   const std::string& recipe() const;
   const std::string& preset() const;
   Traffic traffic() const;
+  /// Planes go through shared memory at present.
+  bool shared_memory() const;
 
  private:
   class Impl;
