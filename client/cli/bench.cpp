@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <iterator>
+#include <map>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -12,7 +14,7 @@
 namespace holdfast::cli {
 namespace {
 
-constexpr int kWarmUp = 2;  // frames: the first has no history, the second fills all buffers
+constexpr int kLeastWarmUp = 2;  // frames: the first has no history, the second fills all buffers
 constexpr int kReferenceFrames = 2;  // timed frames of the scalar kernels
 
 double median(std::vector<double> values) {
@@ -46,21 +48,57 @@ class Runner {
   }
 
   double ms() const {
-    return over_frames([](const FrameReport& report) { return report.ms; });
+    double sum = 0;
+    for (const auto& [stages, reports] : kinds())
+      sum += share(reports) * over(reports, [](const FrameReport& report) { return report.ms; });
+    return sum;
   }
+  /// In the order in which they came first.
   std::vector<StageTime> stages() const {
-    std::vector<StageTime> stages = reports_.front().stages;
-    for (std::size_t k = 0; k < stages.size(); ++k)
-      stages[k].ms = over_frames([k](const FrameReport& r) { return r.stages[k].ms; });
-    return stages;
+    std::vector<StageTime> all;
+    for (const auto& [names, reports] : kinds())
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        const StageTime& stage = reports.front()->stages[k];
+        auto found = std::find_if(all.begin(), all.end(), [&](const StageTime& other) {
+          return other.stage == stage.stage;
+        });
+        if (found == all.end()) {
+          all.push_back({stage.stage, 0, 0});
+          found = std::prev(all.end());
+        }
+        found->ms +=
+            share(reports) * over(reports, [k](const FrameReport& r) { return r.stages[k].ms; });
+        found->bytes_per_pixel += share(reports) * stage.bytes_per_pixel;
+      }
+    return all;
+  }
+  double rested() const {
+    double sum = 0;
+    for (const FrameReport& report : reports_) sum += static_cast<double>(report.rested.size());
+    return sum / static_cast<double>(reports_.size());
   }
   std::string plan() const { return denoiser_.plan_text(); }
 
  private:
+  using Reports = std::vector<const FrameReport*>;
+
+  /// The timed frames by the stages that they ran.
+  std::map<std::vector<std::string>, Reports> kinds() const {
+    std::map<std::vector<std::string>, Reports> kinds;
+    for (const FrameReport& report : reports_) {
+      std::vector<std::string> names;
+      for (const StageTime& stage : report.stages) names.push_back(stage.stage);
+      kinds[names].push_back(&report);
+    }
+    return kinds;
+  }
+  double share(const Reports& kind) const {
+    return static_cast<double>(kind.size()) / static_cast<double>(reports_.size());
+  }
   template <class Value>
-  double over_frames(const Value& value) const {
+  static double over(const Reports& kind, const Value& value) {
     std::vector<double> values;
-    for (const FrameReport& report : reports_) values.push_back(value(report));
+    for (const FrameReport* report : kind) values.push_back(value(*report));
     return median(std::move(values));
   }
 
@@ -70,10 +108,10 @@ class Runner {
   std::vector<FrameReport> reports_;
 };
 
-/// Filters `count` frames after those of warm-up, each by every runner.
-void take_turns(BenchFrames& frames, int count, std::vector<Runner>& runners) {
-  for (int step = 0; step < kWarmUp + count; ++step)
-    for (Runner& runner : runners) runner.filter(frames.at(step), step >= kWarmUp);
+/// Filters `count` frames after `warm` others, each by every runner.
+void take_turns(BenchFrames& frames, int warm, int count, std::vector<Runner>& runners) {
+  for (int step = 0; step < warm + count; ++step)
+    for (Runner& runner : runners) runner.filter(frames.at(step), step >= warm);
 }
 
 /// Runs the scalar kernels while it lives.
@@ -93,7 +131,7 @@ Runner scalar_run(BenchFrames& frames, const DenoiserConfig& config, int count, 
   const ScalarKernels scalar;
   std::vector<Runner> runners;
   runners.emplace_back(config, one_thread);
-  take_turns(frames, std::min(count, kReferenceFrames), runners);
+  take_turns(frames, kLeastWarmUp, std::min(count, kReferenceFrames), runners);
   return std::move(runners.front());
 }
 
@@ -105,6 +143,7 @@ DenoiserConfig config_of(const BenchOptions& options, const DenoiserConfig& of_f
   config.indirect_basis = options.indirect_basis;
   config.half_resolution = options.half_resolution;
   config.history = options.history;
+  config.rest_turns = options.rest_turns;
   return config;
 }
 
@@ -118,7 +157,7 @@ OneSignal time_one_signal(BenchFrames& frames, const BenchOptions& options, bool
   const double us_per_pixel = 1e3 / (static_cast<double>(config.width) * config.height);
   std::vector<Runner> runners;
   runners.emplace_back(config, one_thread);
-  take_turns(frames, options.frames, runners);
+  take_turns(frames, kLeastWarmUp, options.frames, runners);
   OneSignal result{runners.front().ms() * us_per_pixel, 0};
   if (options.reference)
     result.reference_us_per_pixel =
@@ -146,9 +185,9 @@ BenchResult run_bench(const BenchOptions& options) {
   std::vector<Runner> runners;
   for (const std::string& recipe : recipes)
     runners.emplace_back(config_of(options, of_frames, recipe), one_thread);
-  take_turns(frames, options.frames, runners);
+  take_turns(frames, options.warm_frames, options.frames, runners);
   for (std::size_t k = 0; k < recipes.size(); ++k)
-    result.frames.push_back({recipes[k], options.preset, runners[k].ms()});
+    result.frames.push_back({recipes[k], options.preset, runners[k].ms(), runners[k].rested()});
   result.plan = runners.front().plan();
   for (const StageTime& stage : runners.front().stages())
     result.stages.push_back({stage.stage, stage.ms * ns_per_pixel, stage.bytes_per_pixel, 0});
@@ -157,8 +196,9 @@ BenchResult run_bench(const BenchOptions& options) {
     const Runner scalar = scalar_run(frames, config_of(options, of_frames, recipes.front()),
                                      options.frames, one_thread);
     const std::vector<StageTime> stages = scalar.stages();
-    for (std::size_t k = 0; k < result.stages.size(); ++k)
-      result.stages[k].reference_ns_per_pixel = stages[k].ms * ns_per_pixel;
+    for (BenchStage& stage : result.stages)
+      for (const StageTime& same : stages)
+        if (same.stage == stage.stage) stage.reference_ns_per_pixel = same.ms * ns_per_pixel;
   }
   if (options.one_signal) result.one_signal = time_one_signal(frames, options, one_thread);
   return result;

@@ -18,24 +18,28 @@ struct BenchOptions {
   std::vector<std::string> half_resolution;  ///< empty = the preset's
   std::string history;                       ///< empty = the preset's
   std::vector<std::string> signals;          ///< kinds of components that are kept; empty = all
-  int frames = 8;           ///< timed frames of each recipe, >= 1, after two of warm-up
+  int rest_turns = 0;                        ///< 0 = the preset's
+  int frames = 8;           ///< timed frames of each recipe, >= 1, after those of warm-up
+  int warm_frames = 2;      ///< >= 2: the first has no history, the second fills all buffers; at
+                            ///< rest, a scene takes turns after some 200
   int threads = 0;          ///< that filter; 0 = one for each core
   bool reference = true;    ///< also time the scalar kernels
   bool one_signal = false;  ///< also time OneSignal
 };
 
-/// One stage of the core, as medians over frames.
+/// One stage of the core, a frame, as the mean over kinds of frames of medians.
 struct BenchStage {
   std::string stage;
-  double ns_per_pixel = 0;
+  double ns_per_pixel = 0;            ///< of frames without it, too, as 0
   double bytes_per_pixel = 0;         ///< that its passes read and write, each plane once a pass
   double reference_ns_per_pixel = 0;  ///< with the scalar kernels; 0 = not measured
 };
 
-/// One recipe's whole frame inside the core, as a median over frames.
+/// One recipe's whole frame inside the core, likewise.
 struct BenchFrame {
   std::string recipe, preset;
   double ms = 0;
+  double rested = 0;  ///< components that were passed over, a frame
 };
 
 /// A frame of one signal of three channels under recipe `svgf` with four levels, by guides alone:
@@ -55,7 +59,9 @@ struct BenchResult {
 };
 
 /// Times the core alone: frames are in memory before the first is filtered, and results are
-/// dropped. Recipes take turns, frame by frame. On one thread times are processor time, so that
+/// dropped. Recipes take turns, frame by frame. Frames that ran the same stages are of one kind, as
+/// nearly all are but where components rest: times are the median of each kind, in its share of the
+/// frames. On one thread times are processor time, so that
 /// other work on the machine counts little; on more they are wall time.
 ///
 /// The reference of a stage is the same stage in the same run on the same number of threads, its

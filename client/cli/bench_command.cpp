@@ -51,9 +51,19 @@ void add_bench(CLI::App& app) {
       .add_option("--signals", options.signals,
                   "Kinds of components to keep, with commas between: visibility, glossy, indirect")
       ->delimiter(',');
-  command.add_option("--frames", options.frames, "Timed frames of each recipe, after two others")
+  command.add_option("--frames", options.frames, "Timed frames of each recipe")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command
+      .add_option("--warm-frames", options.warm_frames,
+                  "Frames before those; after 200, components of a scene at rest take turns")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  command
+      .add_option("--rest-turns", options.rest_turns,
+                  "At rest, components are filtered once in so many frames; 1: in all. Default: "
+                  "the preset's")
+      ->check(CLI::Range(1, 16));
   command.add_option("--threads", options.threads, "That filter; default: one for each core")
       ->check(CLI::Range(1, 1024));
   command.add_flag("--no-reference", args->no_reference, "Do not time the scalar kernels");

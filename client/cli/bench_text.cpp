@@ -17,7 +17,8 @@ nlohmann::ordered_json bench_json(const BenchResult& result) {
                               {"bytes_per_pixel", s.bytes_per_pixel},
                               {"reference_ns_per_pixel", s.reference_ns_per_pixel}});
   for (const BenchFrame& f : result.frames)
-    json["frames"].push_back({{"recipe", f.recipe}, {"preset", f.preset}, {"ms", f.ms}});
+    json["frames"].push_back(
+        {{"recipe", f.recipe}, {"preset", f.preset}, {"ms", f.ms}, {"rested", f.rested}});
   if (result.one_signal)
     json["one_signal"] = {{"us_per_pixel", result.one_signal->us_per_pixel},
                           {"reference_us_per_pixel", result.one_signal->reference_us_per_pixel}};

@@ -1,7 +1,6 @@
 #include "core/denoiser/component_filter.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -153,8 +152,7 @@ ComponentFilter::ComponentFilter(const Plan& plan, const Plan::Entry& entry, int
       channels_(component_.kind == ComponentKind::kVisibility ? 1 : 3),
       extras_(plan.extras_of(channels_)),
       kept_(width, height, ComponentHistory(channels_, extras_).kept_as(), plan.history_format),
-      row_samples_(static_cast<std::size_t>(height)),
-      row_pixels_(static_cast<std::size_t>(height)) {
+      sample_count_(height) {
   if (entry.cones) cones_ = ConeHistory(width, height, recipe_.indirect_basis, plan.history_format);
 }
 
@@ -188,7 +186,7 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
     pass_unlit(*input.unshadowed, std::as_const(scratch.noisy)[0], out.channel(0));
   }
   input.timer.end("filter", filter_traffic(channels_, recipe_, has_footprint_));
-  count_history(input.frames.now, histories.now);
+  sample_count_.measure(input.frames.now, histories.now);
   keep(input, histories);
   if (kept_.format() == HistoryFormat::kPacked)
     input.timer.end("keep", packing_traffic(histories.now.data.count()));
@@ -365,22 +363,6 @@ ComponentHistory ComponentFilter::kept() const {
   ComponentHistory history(channels_, extras_);
   history.data = kept_.copy();
   return history;
-}
-
-void ComponentFilter::count_history(const Guides& now, const ComponentHistory& history) {
-  for_each_row(now.view.height, [&](int y) {
-    double samples = 0, pixels = 0;
-    for (int x = 0; x < now.view.width; ++x) {
-      if (!(now.depth().at(x, y) > 0.0f)) continue;
-      samples += static_cast<double>(history.samples().at(x, y));
-      pixels += 1;
-    }
-    row_samples_[static_cast<std::size_t>(y)] = samples;
-    row_pixels_[static_cast<std::size_t>(y)] = pixels;
-  });
-  const double pixels = std::accumulate(row_pixels_.begin(), row_pixels_.end(), 0.0);
-  const double samples = std::accumulate(row_samples_.begin(), row_samples_.end(), 0.0);
-  mean_history_frames_ = pixels > 0 ? samples / pixels : 0;
 }
 
 }  // namespace holdfast

@@ -9,6 +9,7 @@
 #include "core/history/frame_pair.h"
 #include "core/history/glossy_history.h"
 #include "core/history/gradients.h"
+#include "core/history/sample_count.h"
 #include "core/motion/shadow_field.h"
 #include "core/spatial/half_grid.h"
 
@@ -86,8 +87,12 @@ class ComponentFilter {
   /// A copy of what the last frame left for the next one; something else in its place.
   ComponentHistory kept() const;
   void keep(ComponentHistory& history) { kept_.keep(history.data, 0); }
+  /// The same, to look at, if it is kept as floats; else empty.
+  const Channels<float>& kept_floats() const { return kept_.floats(); }
   /// Mean of the samples behind the pixels on surfaces, after the last frame.
-  double mean_history_frames() const { return mean_history_frames_; }
+  double mean_history_frames() const { return sample_count_.mean(); }
+  /// The same over those that have a history.
+  double mean_known_frames() const { return sample_count_.mean_of_known(); }
   /// Share of the tiles whose light has changed though nothing moved, in the last frame.
   double changed_share() const { return changed_share_; }
   /// Kept from frame to frame.
@@ -104,7 +109,6 @@ class ComponentFilter {
   void blend(const ComponentInput& input, bool follows, Scratch& s);
   void filter(const ComponentInput& input, Scratch& s, Plane& out);
   void keep(const ComponentInput& input, HistoryRoom& histories);
-  void count_history(const Guides& now, const ComponentHistory& history);
 
   Component component_;
   bool has_footprint_, follows_effect_;
@@ -113,8 +117,8 @@ class ComponentFilter {
   ConeHistory cones_;  ///< empty unless the plan keeps cones
   HistoryExtras extras_;
   KeptImages kept_;
-  std::vector<double> row_samples_, row_pixels_;
-  double mean_history_frames_ = 0, changed_share_ = 0;
+  SampleCount sample_count_;
+  double changed_share_ = 0;
 };
 
 }  // namespace holdfast

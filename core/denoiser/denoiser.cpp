@@ -7,38 +7,22 @@
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
+#include "core/denoiser/debug_planes.h"
+#include "core/denoiser/frame_check.h"
 #include "core/denoiser/frame_filter.h"
 #include "core/denoiser/frame_input.h"
 #include "core/denoiser/half_frame.h"
 #include "core/denoiser/light_shading.h"
 #include "core/denoiser/plan.h"
+#include "core/denoiser/rest.h"
 #include "core/denoiser/stage_timer.h"
 #include "core/denoiser/switch_plan.h"
 #include "core/denoiser/take_over.h"
 #include "core/frame/error.h"
-#include "core/frame/plane_size.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
-namespace {
-
-/// The planes of `frame` must be exactly those of the session, each of its size.
-void check_planes(const DenoiserConfig& config, const PlaneSet& planes) {
-  for (const PlaneId id : config.planes) {
-    const Plane& plane = planes.at(id);
-    const PlaneSize size = plane_size(id, config.width, config.height);
-    const PlaneSize found{plane.width(), plane.height()};
-    if (found != size)
-      throw InputError("plane " + plane_name(id), "must be " + size_text(size), size_text(found));
-  }
-  for (const Plane& plane : planes)
-    if (std::find(config.planes.begin(), config.planes.end(), plane.id()) == config.planes.end())
-      throw InputError("plane " + plane_name(plane.id()), "must be one of the session's planes",
-                       "not among them");
-}
-
-}  // namespace
 
 class Denoiser::Impl {
  public:
@@ -68,6 +52,7 @@ class Denoiser::Impl {
                            entry.half ? half_size(c.height) : c.height);
       signals.push_back(component_plane(entry.component));
     }
+    rest = RestTurns(c, plan);
   }
 
   void go_on_from(const Impl& before) {
@@ -88,7 +73,7 @@ class Denoiser::Impl {
     if (frame.index <= last_index)
       throw InputError("frame index", "must be greater than " + std::to_string(last_index),
                        std::to_string(frame.index));
-    check_planes(config, frame.planes);
+    check_frame_planes(config, frame.planes);
     scene.advance(frame, config.width, config.height, config.lights);  // the last that can throw
 
     FrameReport report;
@@ -113,15 +98,8 @@ class Denoiser::Impl {
     now = 1 - now;
     load_guides(frame, report);
     timer.end("guides", 10);
-    const FramePair frames{guides[now], guides[1 - now], scene};
-    if (has_past && plan.full.any) {
-      trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
-      timer.end("surface", 17);
-    }
-    if (plan.half.any) {
-      half.advance(guides[now], scene, frame.planes, has_past);
-      timer.end("half", 16);
-    }
+    rest.begin_frame(frame, guides[now], guides[1 - now], scene, has_past);
+    follow_surfaces(frame, timer);
     if (!plan.shaded_lights.empty()) {
       shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
       timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
@@ -129,7 +107,8 @@ class Denoiser::Impl {
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
     for (std::size_t k = 0; k < filters.size(); ++k) {
       timer.enter(component_name(filters[k].component()));
-      run_component(frame, frames, plan.components[k], filters[k], results, report, timer);
+      if (!pass_over(frame, k, results, report, timer))
+        run_component(frame, k, results, report, timer);
     }
     timer.enter("");
     report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
@@ -149,8 +128,10 @@ class Denoiser::Impl {
 
   void follow_next_plan(StageTimer& timer) {
     std::string preset = next_plan->preset.name;
+    RestTurns next_rest(config, *next_plan);
     switch_plan(config, *next_plan, has_past ? &guides[now] : nullptr,
                 {plan, scratch, surface, half, filters});
+    rest = std::move(next_rest);
     config.preset = std::move(preset);
     next_plan.reset();
     timer.end("preset", 0);
@@ -170,12 +151,63 @@ class Denoiser::Impl {
     if (plan.motion) load_motion(frame.planes.at({PlaneKind::kMotion, {}}), out);
   }
 
-  void run_component(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
-                     ComponentFilter& component_filter, PlaneSet& results, FrameReport& report,
-                     StageTimer& timer) {
-    const PlaneId id = component_plane(entry.component);
+  /// What components that are filtered in this frame follow: of each resolution that has one.
+  void follow_surfaces(const Frame& frame, StageTimer& timer) {
+    followed_full = followed_half = false;
+    for (std::size_t k = 0; k < filters.size(); ++k)
+      if (!rest.may_pass(k)) follow_surfaces(frame, plan.components[k].half, timer);
+  }
+
+  /// Likewise of one resolution, unless that was done.
+  void follow_surfaces(const Frame& frame, bool halved, StageTimer& timer) {
+    if (halved && !followed_half) {
+      half.advance(guides[now], scene, frame.planes, has_past);
+      timer.end("half", 16);
+      followed_half = true;
+    }
+    if (!halved && !followed_full && has_past) {
+      const FramePair frames{guides[now], guides[1 - now], scene};
+      trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
+      timer.end("surface", 17);
+      followed_full = true;
+    }
+  }
+
+  /// Returns the last result of a component at rest once more, unless it is to be filtered.
+  bool pass_over(const Frame& frame, std::size_t k, PlaneSet& results, FrameReport& report,
+                 StageTimer& timer) {
+    const Plan::Entry& entry = plan.components[k];
+    const PlaneId id = signals[k];
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
     timer.end("input", 2 * scratch.noisy.count());
+    if (!rest.may_pass(k)) return false;
+    const Plane* unshadowed = unshadowed_of(frame, entry);
+    if (entry.half) half.take_signal(scratch.noisy);
+    const int channels = channel_count(id.kind);
+    const bool holds =
+        rest.holds(k,
+                   {entry.half ? half.guides() : guides[now], filters[k].kept_floats(),
+                    entry.half ? half.scratch().noisy : scratch.noisy, channels},
+                   unshadowed);
+    if (holds) {
+      rest.repeat(k, guides[now], scratch.noisy, unshadowed, results);
+      report.rested.push_back(entry.component);
+      note_history(filters[k], report);
+    }
+    timer.end("rest", RestTurns::traffic(channels));
+    if (holds) return true;
+    timer.enter("");
+    follow_surfaces(frame, entry.half, timer);
+    timer.enter(component_name(entry.component));
+    return false;
+  }
+
+  void run_component(const Frame& frame, std::size_t k, PlaneSet& results, FrameReport& report,
+                     StageTimer& timer) {
+    const Plan::Entry& entry = plan.components[k];
+    ComponentFilter& component_filter = filters[k];
+    const FramePair frames{guides[now], guides[1 - now], scene};
+    const PlaneId id = signals[k];
     Plane& out = results.add(id, config.width, config.height);
     if (entry.half) {
       ComponentInput input = half.take(entry, scratch.noisy, frame.planes, timer);
@@ -189,11 +221,26 @@ class Denoiser::Impl {
     } else {
       component_filter.run(full_input(frame, frames, entry, report, timer), scratch, out);
     }
-    report.mean_history_frames +=
-        component_filter.mean_history_frames() / static_cast<double>(filters.size());
+    note_history(component_filter, report);
     if (component_filter.changed_share() > 0)
       report.changes.push_back({entry.component, component_filter.changed_share()});
-    if (config.debug_planes) write_debug(entry, results);
+    if (config.debug_planes)
+      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry.component,
+                         config.width, config.height, results);
+    rest.filtered(k, component_filter, results);
+  }
+
+  void note_history(const ComponentFilter& filter, FrameReport& report) const {
+    report.mean_history_frames +=
+        filter.mean_history_frames() / static_cast<double>(filters.size());
+  }
+
+  /// Light of a visibility without shadows, where unlit places are left out; else null.
+  const Plane* unshadowed_of(const Frame& frame, const Plan::Entry& entry) const {
+    if (!entry.leaves_out_unlit) return nullptr;
+    const auto id = PlaneId::of_light(PlaneKind::kUnshadowed, entry.component.light);
+    const Plane* sent = frame.planes.find(id);
+    return sent != nullptr ? sent : shaded.find(id);
   }
 
   /// The input of a component of the frame's own resolution.
@@ -208,11 +255,7 @@ class Denoiser::Impl {
       count_repairs(report, gradient,
                     load_gradients(frame.planes.at(gradient), kLargestRadiance, scratch.gradients));
     }
-    if (entry.leaves_out_unlit) {
-      const auto unshadowed = PlaneId::of_light(PlaneKind::kUnshadowed, entry.component.light);
-      input.unshadowed = frame.planes.find(unshadowed);
-      if (input.unshadowed == nullptr) input.unshadowed = shaded.find(unshadowed);
-    }
+    input.unshadowed = unshadowed_of(frame, entry);
     if (entry.component.kind == ComponentKind::kVisibility && entry.has_footprint) {
       const std::uint32_t light = entry.component.light;
       input.light = &*std::find_if(config.lights.begin(), config.lights.end(),
@@ -240,23 +283,6 @@ class Denoiser::Impl {
     return count + (planes.find({PlaneKind::kEmission, {}}) ? 3 : 0);
   }
 
-  void write_debug(const Plan::Entry& entry, PlaneSet& results) {
-    const Channels<float>& debug = entry.half ? half.scratch().debug : scratch.debug;
-    const int shrink = entry.half ? 2 : 1;
-    const auto copy = [&](PlaneKind kind, int first, float scale) {
-      Plane& out = results.add({kind, entry.component}, config.width, config.height);
-      for (int c = 0; c < out.channels(); ++c)
-        for_each_row(config.height, [&](int y) {
-          const float* in = debug[first + c].row(y / shrink);
-          float* to = out.channel(c).row(y);
-          for (int x = 0; x < config.width; ++x) to[x] = scale * in[x / shrink];
-        });
-    };
-    copy(PlaneKind::kDebugMotion, kDebugX, static_cast<float>(shrink));
-    copy(PlaneKind::kDebugHistory, kDebugFrames, 1.0f);
-    copy(PlaneKind::kDebugConfidence, kDebugTrust, 1.0f);
-  }
-
   static void count_repairs(FrameReport& report, PlaneId plane, std::uint64_t values) {
     if (values > 0) report.repaired.push_back({plane, values});
   }
@@ -272,7 +298,9 @@ class Denoiser::Impl {
   std::unique_ptr<FrameFilter> oracle;  ///< in place of all that, with preset `reference`
   ConeSamples cone_samples{};           ///< of the component at hand
   SceneMotion scene;
-  PlaneSet shaded;  ///< unshadowed light of `plan.shaded_lights`
+  RestTurns rest;
+  bool followed_full = false, followed_half = false;  ///< surfaces were, in this frame
+  PlaneSet shaded;                                    ///< unshadowed light of `plan.shaded_lights`
   std::vector<ComponentFilter> filters;
   std::vector<PlaneId> signals;    ///< the planes of `filters`
   std::vector<PlaneId> announced;  ///< all result planes, in order
@@ -302,7 +330,7 @@ const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 std::size_t Denoiser::memory_bytes() const {
   std::size_t sum =
       impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
-  sum += impl_->half.bytes();
+  sum += impl_->half.bytes() + impl_->rest.bytes();
   if (impl_->oracle) sum += impl_->oracle->bytes();
   for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters)
@@ -314,7 +342,7 @@ std::size_t Denoiser::memory_bytes() const {
 std::size_t Denoiser::history_bytes() const {
   if (impl_->oracle) return impl_->oracle->bytes();
   if (!impl_->plan.history) return 0;
-  std::size_t sum = impl_->guides[0].bytes() + impl_->half.guides().bytes();
+  std::size_t sum = impl_->guides[0].bytes() + impl_->half.guides().bytes() + impl_->rest.bytes();
   for (const ComponentFilter& filter : impl_->filters)
     sum += filter.history_bytes() + filter.cone_bytes();
   return sum;
@@ -338,6 +366,7 @@ std::string Denoiser::plan_text() const {
     add("kept of " + name + format, filter.history_bytes());
     add("kept cones of " + name + format, filter.cone_bytes());
   }
+  add("kept results, while components rest", impl_->rest.bytes());
   add("all that is kept from frame to frame", history_bytes());
   add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
   add("scratch", impl_->scratch.bytes());

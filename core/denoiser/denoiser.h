@@ -32,6 +32,8 @@ struct DenoiserConfig {
   int kernel_radius =
       0;                ///< likewise, of the a-trous kernel: 1 (3x3 taps), 2 (5x5); 0 = its choice
   int more_levels = 0;  ///< a-trous levels of radiance added to the recipe's, -3..1
+  int rest_turns = 0;   ///< likewise, in how many frames a component at rest is filtered once: 1
+                        ///< (in all) .. 16; 0 = the preset's choice
   std::uint64_t seed = 0;
   bool debug_planes = false;  ///< also return motion, history and confidence of each component
 };
@@ -64,6 +66,7 @@ struct FrameReport {
   std::vector<StageTime> stages;
   bool history_reset = false;          ///< first frame, cut or reset
   std::vector<NoticedChange> changes;  ///< where the recipe looks for them; most frames: none
+  std::vector<Component> rested;       ///< passed over: they show the results of the frame before
   double mean_history_frames = 0;      ///< over surface pixels, all components
   std::vector<RepairCount> repaired;   ///< depth, normal, signal and gradient planes with repairs
   std::uint64_t non_finite_out = 0;    ///< always 0; counted, not assumed

@@ -115,7 +115,7 @@ ComponentInput HalfFrame::take(const Plan::Entry& entry, const Channels<float>& 
     input.cone_samples = cone_samples_;
     input.quads = &grid_;
   } else {
-    halve_signal(noisy, 3, grid_, scratch_.noisy);
+    take_signal(noisy);
   }
   if (uses_hits(entry))
     input.reflections = {halved(kHits[0], planes), halved(kHits[1], planes),

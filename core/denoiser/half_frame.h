@@ -28,6 +28,9 @@ class HalfFrame {
   ComponentInput take(const Plan::Entry& entry, const Channels<float>& noisy,
                       const PlaneSet& planes, StageTimer& timer);
 
+  /// Takes the samples alone, into `scratch().noisy`, by the grid of the last frame.
+  void take_signal(const Channels<float>& noisy) { halve_signal(noisy, 3, grid_, scratch_.noisy); }
+
   /// Where the component's filter writes.
   Plane& result(PlaneId id) { return *planes_.find(id); }
   /// Brings that result to the frame's size; pixels without surface show `noisy`.

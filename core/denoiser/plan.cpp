@@ -86,6 +86,30 @@ HistoryFormat format_of(const Preset& preset, const Recipe& recipe) {
   return recipe.svgf_filter ? HistoryFormat::kFloat : preset.history;
 }
 
+/// Only who notices changes of light may look away, and what is looked at are floats.
+int rest_turns_of(const Plan& plan) {
+  const Recipe& recipe = plan.recipe;
+  const bool notices = recipe.blending == Blending::kExpectedError &&
+                       recipe.visibility_blend.change.noticed &&
+                       recipe.glossy_blend.change.noticed && recipe.indirect_blend.change.noticed;
+  const bool rests = notices && plan.history_format == HistoryFormat::kFloat &&
+                     !plan.any_gradients && !plan.components.empty() && !plan.preset.oracle;
+  return rests ? plan.preset.rest_turns : 1;
+}
+
+/// Deals the turns at rest so that frames cost about the same: the dearest components first, each
+/// to the turn with the least so far.
+void deal_turns(Plan& plan) {
+  std::vector<int> cost(static_cast<std::size_t>(plan.rest_turns));
+  for (const bool radiance : {true, false})
+    for (Plan::Entry& entry : plan.components) {
+      if ((entry.component.kind != ComponentKind::kVisibility) != radiance) continue;
+      const auto least = std::min_element(cost.begin(), cost.end());
+      entry.turn = static_cast<int>(least - cost.begin());
+      *least += radiance && !entry.half ? 3 : radiance ? 1 : 2;  // about, as measured
+    }
+}
+
 }  // namespace
 
 Plan Plan::make(const DenoiserConfig& config) {
@@ -136,6 +160,8 @@ Plan Plan::make(const DenoiserConfig& config) {
     grid.any_visibility |= entry.component.kind == ComponentKind::kVisibility;
     grid.any_cones |= entry.cones;
   }
+  plan.rest_turns = rest_turns_of(plan);
+  deal_turns(plan);
   for (const Light& light : config.lights)
     if (is_shaded_here(config, light)) plan.shaded_lights.push_back(light.id);
   plan.shaded_lobe =

@@ -23,6 +23,7 @@ struct Plan {
     bool gradients = false;       ///< the recipe asks for gradient samples and frames bring them
     bool half = false;            ///< filtered at half resolution
     bool leaves_out_unlit = false;  ///< of a visibility: what its light does not reach, unlit.h
+    int turn = 0;                   ///< 0 .. rest_turns - 1: the frame of its turn at rest
   };
   /// What the components of one resolution need together.
   struct Grid {
@@ -45,6 +46,8 @@ struct Plan {
   bool any_gradients = false;  ///< a component has gradient samples
   bool roughness = false;      ///< roughness is kept with the guides
   bool motion = false;         ///< the client's motion vectors are kept with the guides
+  int rest_turns = 1;          ///< frames of which a component at rest is filtered in one; 1: never
+                               ///< passed over
 
   /// Checks `config` and derives its plan. Throws InputError naming what is wrong.
   static Plan make(const DenoiserConfig& config);

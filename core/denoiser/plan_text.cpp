@@ -1,4 +1,5 @@
 #include "core/denoiser/plan.h"
+#include "core/denoiser/rest.h"
 #include "core/denoiser/traffic.h"
 
 namespace holdfast {
@@ -69,6 +70,10 @@ std::string text_of(const Plan& plan, const Plan::Entry& entry) {
     text += name + (entry.gradients ? "history replaced sooner by gradient samples\n"
                                     : "no gradient samples, history at its fixed pace\n");
   add(filter_text(recipe, visibility), filter_traffic(channels, recipe, entry.has_footprint));
+  if (plan.rest_turns > 1)
+    text += name + "at rest, turn " + std::to_string(entry.turn + 1) +
+            "; else its light is looked at and its last result returned, " +
+            std::to_string(4 * RestTurns::traffic(channels)) + " B/pixel\n";
   return text;
 }
 
@@ -80,6 +85,9 @@ std::string Plan::text() const {
   if (history)
     text += std::string("frame: what is kept for the next frame, as ") +
             history_name(history_format) + "\n";
+  if (rest_turns > 1)
+    text += "frame: at rest components take turns, each is filtered in one frame of " +
+            std::to_string(rest_turns) + "\n";
   for (const Entry& entry : components) text += text_of(*this, entry);
   for (const std::uint32_t light : shaded_lights)
     text += "light" + std::to_string(light) + ".unshadowed: from the light's radiance, " +

@@ -21,6 +21,8 @@ struct Preset {
                                                   ///< keep moments of the luminance, as floats
   bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow
   int more_levels = 0;  ///< of the a-trous filter of radiance, beside the recipe's
+  int rest_turns = 1;   ///< components at rest are filtered once in so many frames; 1: in all.
+                        ///< Of recipes that notice changes of light, and keep floats
 };
 
 /// All presets, fastest first; `reference` last, which is no choice of quality but what the others

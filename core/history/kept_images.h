@@ -47,6 +47,8 @@ class KeptImages {
   /// channels of a pixel are rounded by the same number: equal values stay equal, grey stays grey.
   void keep(Channels<float>& now, std::uint64_t key, const RowStep& packing = {});
 
+  /// What is kept, if as floats; else empty.
+  const Channels<float>& floats() const { return whole_; }
   /// A copy of what is kept.
   Channels<float> copy() const;
 

@@ -2,36 +2,9 @@
 
 #include <algorithm>
 
-#include "core/kernels/math.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
-namespace {
-
-enum Found : std::uint8_t { kNoHistory, kSame, kSuspect, kChanged };
-
-/// Sums over the pixels of a tile that have history.
-struct TileSums {
-  double pixels = 0, square = 0;
-  double difference[3] = {}, value[3] = {};
-
-  Found verdict(const LightChangeRule& rule) const {
-    if (!(pixels > 1)) return kNoHistory;
-    double shift2 = 0, level2 = 0;
-    for (int c = 0; c < 3; ++c) {
-      shift2 += square_of(difference[c] / pixels);
-      level2 += square_of(value[c] / pixels);
-    }
-    const double variance = std::max(square / pixels - shift2, 0.0);
-    const double error2 = variance / pixels;
-    if (!(shift2 > square_of(double{rule.least_share}) * level2)) return kSame;
-    if (shift2 > square_of(double{rule.tile_deviations}) * error2) return kChanged;
-    return shift2 > square_of(double{rule.frame_deviations}) * error2 ? kSuspect : kSame;
-  }
-  static double square_of(double v) { return v * v; }
-};
-
-}  // namespace
 
 LightChange::LightChange(int width, int height)
     : columns_((width + kTile - 1) / kTile),
@@ -47,19 +20,16 @@ void LightChange::clear() {
 void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
                           const LightChangeRule& rule) {
   for_each_row(rows_, [&](int row) { measure_tiles(row, guides, gathered, rule); });
-  const auto count = [&](Found what) { return std::count(found_.begin(), found_.end(), what); };
-  constexpr double kLeastTiles = 3;  // a few may differ by chance
-  const auto changed = static_cast<double>(count(kChanged));
-  const double suspect = changed + static_cast<double>(count(kSuspect));
-  const double known = suspect + static_cast<double>(count(kSame));
+  TileCounts counts;
+  for (const TileFinding found : found_) counts.add(found);
   clear();
-  if (suspect > kLeastTiles + double{rule.frame_share} * known) {
+  if (counts.everywhere(rule)) {
     share_ = 1;
     std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
     return;
   }
-  if (changed > 0) {
-    share_ = changed / known;
+  if (counts.changed > 0) {
+    share_ = counts.changed / counts.known();
     mark_around();
   }
 }
@@ -99,7 +69,8 @@ int LightChange::run(int x, int y, int count) const {
 void LightChange::mark_around() {
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      if (found_[static_cast<std::size_t>(row * columns_ + column)] != kChanged) continue;
+      if (found_[static_cast<std::size_t>(row * columns_ + column)] != TileFinding::kChanged)
+        continue;
       for (int y = std::max(row - 1, 0); y <= std::min(row + 1, rows_ - 1); ++y)
         for (int x = std::max(column - 1, 0); x <= std::min(column + 1, columns_ - 1); ++x)
           marked_[static_cast<std::size_t>(y * columns_ + x)] = 1;

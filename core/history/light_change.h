@@ -4,18 +4,9 @@
 #include <vector>
 
 #include "core/frame/guides.h"
+#include "core/history/tile_sums.h"
 
 namespace holdfast {
-
-/// When a tile counts as changed. Ours; tuned on scenes at rest with and without a light switched.
-struct LightChangeRule {
-  bool noticed = false;           ///< look for changes at all
-  float tile_deviations = 5.0f;   ///< of a tile's mean difference, in its standard errors
-  float frame_deviations = 3.0f;  ///< the same, where many tiles differ by that much:
-  float frame_share = 1.0f;       ///< more of them than this, 0..1 (chance: 0.003); 1: never
-  float least_share = 0.002f;     ///< of a tile's mean difference in its mean, below which it does
-                                  ///< not show
-};
 
 /// Candidate values of a history, and their differences to the frame, as a blend has gathered them.
 struct GatheredHistory {
@@ -59,7 +50,7 @@ class LightChange {
   void mark_around();
 
   int columns_ = 0, rows_ = 0;
-  std::vector<std::uint8_t> found_;   ///< by tile: one of kNoHistory, kSame, kChanged
+  std::vector<TileFinding> found_;    ///< by tile
   std::vector<std::uint8_t> marked_;  ///< by tile: changed, or beside one that is
   double share_ = 0;
 };

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace holdfast {
+
+/// When a tile counts as changed. Ours; tuned on scenes at rest with and without a light switched.
+struct LightChangeRule {
+  bool noticed = false;           ///< look for changes at all
+  float tile_deviations = 5.0f;   ///< of a tile's mean difference, in its standard errors
+  float frame_deviations = 3.0f;  ///< the same, where many tiles differ by that much:
+  float frame_share = 1.0f;       ///< more of them than this, 0..1 (chance: 0.003); 1: never
+  float least_share = 0.002f;     ///< of a tile's mean difference in its mean, below which it does
+                                  ///< not show
+};
+
+/// What a tile's difference says of its light.
+enum class TileFinding : std::uint8_t { kNoHistory, kSame, kSuspect, kChanged };
+
+/// Sums over the pixels of a tile that have history: of a history h and its difference d to the
+/// frame, by channel.
+struct TileSums {
+  double pixels = 0, square = 0;  ///< of |d|^2
+  double difference[3] = {}, value[3] = {};
+
+  static double square_of(double v) { return v * v; }
+  /// |mean d|^2
+  double shift2() const {
+    double sum = 0;
+    for (const double d : difference) sum += square_of(d / pixels);
+    return sum;
+  }
+  /// |mean h|^2
+  double level2() const {
+    double sum = 0;
+    for (const double h : value) sum += square_of(h / pixels);
+    return sum;
+  }
+  /// Variance of mean d, summed over channels.
+  double error2() const { return std::max(square / pixels - shift2(), 0.0) / pixels; }
+
+  TileFinding verdict(const LightChangeRule& rule) const {
+    if (!(pixels > 1)) return TileFinding::kNoHistory;
+    const double shift = shift2(), error = error2();
+    if (!(shift > square_of(double{rule.least_share}) * level2())) return TileFinding::kSame;
+    if (shift > square_of(double{rule.tile_deviations}) * error) return TileFinding::kChanged;
+    return shift > square_of(double{rule.frame_deviations}) * error ? TileFinding::kSuspect
+                                                                    : TileFinding::kSame;
+  }
+};
+
+/// How many tiles of an image are found to be what.
+struct TileCounts {
+  double same = 0, suspect = 0, changed = 0;
+
+  void add(TileFinding found) {
+    same += found == TileFinding::kSame ? 1 : 0;
+    suspect += found == TileFinding::kSuspect ? 1 : 0;
+    changed += found == TileFinding::kChanged ? 1 : 0;
+  }
+  double known() const { return same + suspect + changed; }
+  /// Whether so many differ that all have changed.
+  bool everywhere(const LightChangeRule& rule) const {
+    constexpr double kLeastTiles = 3;  // a few may differ by chance
+    return suspect + changed > kLeastTiles + double{rule.frame_share} * known();
+  }
+};
+
+}  // namespace holdfast
