@@ -23,7 +23,7 @@ struct ServiceState {
       : config(c),
         log(std::move(l)),
         tokens(c.token_file),
-        sessions(c.limits),
+        sessions(c.limits, std::chrono::steady_clock::now, Scheduler::frames_at_once(c.threads)),
         streams(c.max_streams, c.max_waiting_per_address),
         scheduler(c.threads),
         encoders(std::max(1, scheduler.threads() / 4)),
