@@ -14,8 +14,8 @@ inline constexpr int kMaxLights = 256;
 /// What the sessions of a server may take together and alone.
 struct SessionLimits {
   std::size_t max_sessions = 64;
-  std::size_t max_session_bytes = std::size_t{8} << 30;  ///< frames in flight, history and scratch
-  std::size_t max_total_bytes = std::size_t{16} << 30;   ///< the same, of all sessions
+  std::size_t max_session_bytes = std::size_t{8} << 30;  ///< frames in flight, history
+  std::size_t max_total_bytes = std::size_t{16} << 30;   ///< of all sessions, scratch included
   int max_dimension = kMaxDimension;                     ///< pixels, width and height of a frame
   std::chrono::milliseconds linger{30000};  ///< a session without a stream is kept this long
   int credits = 3;                          ///< frames in flight for each session, >= 1

@@ -93,6 +93,8 @@ Metrics::Metrics()
       sessions_(gauge(*registry_, "holdfast_sessions", "Sessions that exist")),
       streams_(gauge(*registry_, "holdfast_streams", "Open streams")),
       session_bytes_(gauge(*registry_, "holdfast_session_bytes", "Memory accounted to sessions")),
+      scratch_bytes_(gauge(*registry_, "holdfast_scratch_bytes",
+                           "Memory accounted to the scratch that sessions share")),
       resident_bytes_(gauge(*registry_, "holdfast_resident_bytes", "Memory of the process")),
       ready_(gauge(*registry_, "holdfast_ready", "1 if new sessions are accepted")) {
   // Series exist from the start, so that a rate over them does not miss the first event.
@@ -150,6 +152,7 @@ std::string Metrics::text(const Now& now) {
   sessions_.Set(static_cast<double>(now.sessions));
   streams_.Set(static_cast<double>(now.streams));
   session_bytes_.Set(static_cast<double>(now.session_bytes));
+  scratch_bytes_.Set(static_cast<double>(now.scratch_bytes));
   resident_bytes_.Set(resident_bytes());
   ready_.Set(now.ready ? 1 : 0);
   return prometheus::TextSerializer().Serialize(registry_->Collect());

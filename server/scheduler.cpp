@@ -15,6 +15,8 @@ int leader_count(int threads) { return std::max(1, threads / 4); }
 
 }  // namespace
 
+int Scheduler::frames_at_once(int threads) { return leader_count(thread_count(threads)); }
+
 Scheduler::Scheduler(int threads, Clock clock)
     : clock_(std::move(clock)),
       threads_(thread_count(threads)),

@@ -53,6 +53,8 @@ class Scheduler {
   static constexpr std::chrono::milliseconds kDeadlineSlack{20};  ///< about a frame; ours
 
   int threads() const { return threads_; }
+  /// Frames that are filtered at once, at most, by so many `threads`, as of the constructor.
+  static int frames_at_once(int threads);
 
  private:
   void lead();

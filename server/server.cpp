@@ -122,8 +122,9 @@ class Server::Impl {
   void start_admin() {
     const auto ready = [this] { return !state_.draining; };
     const auto metrics = [this, ready] {
-      return state_.metrics.text(
-          {state_.sessions.size(), state_.streams.size(), state_.sessions.total_bytes(), ready()});
+      return state_.metrics.text({state_.sessions.size(), state_.streams.size(),
+                                  state_.sessions.session_bytes(), state_.sessions.scratch_bytes(),
+                                  ready()});
     };
     const auto sessions = [this] {
       return sessions_json(state_, std::chrono::steady_clock::now());

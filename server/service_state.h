@@ -24,7 +24,7 @@ struct ServiceState {
       : config(c),
         log(std::move(l)),
         tokens(c.token_file),
-        sessions(c.limits),
+        sessions(c.limits, std::chrono::steady_clock::now, Scheduler::frames_at_once(c.threads)),
         shared_memory(sessions),
         streams(c.max_streams, c.max_waiting_per_address),
         scheduler(c.threads),

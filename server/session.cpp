@@ -9,20 +9,29 @@
 #include "server/error.h"
 
 namespace holdfast::server {
+namespace {
 
-Session::Session(std::string id, std::string token, SessionConfig config, int remembered)
+SessionBytes bytes_of(const Denoiser& denoiser) {
+  return {denoiser.held_bytes(), denoiser.scratch_bytes()};
+}
+
+}  // namespace
+
+Session::Session(std::string id, std::string token, SessionConfig config, int remembered,
+                 std::shared_ptr<ScratchPool> scratch)
     : id_(std::move(id)),
       token_(std::move(token)),
+      scratch_(std::move(scratch)),
       config_(std::make_shared<const SessionConfig>(std::move(config))),
-      denoiser_(config_->denoiser),
-      denoiser_bytes_(denoiser_->memory_bytes()),
+      denoiser_(std::in_place, config_->denoiser, scratch_),
+      denoiser_bytes_(bytes_of(*denoiser_)),
       plan_text_(denoiser_->plan_text()),
       ledger_(static_cast<std::size_t>(remembered)) {
   if (!config_->preset_ms.empty()) chooser_.emplace(config_->preset_ms, config_->budget_ms);
 }
 
 void Session::follow(std::shared_ptr<const SessionConfig> config) {
-  if (!denoiser_) denoiser_.emplace(config_->denoiser);
+  if (!denoiser_) denoiser_.emplace(config_->denoiser, scratch_);
   try {
     denoiser_.emplace(Denoiser(config->denoiser, *denoiser_));
   } catch (const std::bad_alloc&) {
@@ -33,7 +42,7 @@ void Session::follow(std::shared_ptr<const SessionConfig> config) {
   if (!config->preset_ms.empty()) chooser_.emplace(config->preset_ms, config->budget_ms);
   const std::lock_guard lock(mutex_);
   config_ = std::move(config);
-  denoiser_bytes_ = denoiser_->memory_bytes();
+  denoiser_bytes_ = bytes_of(*denoiser_);
   plan_text_ = std::move(plan_text);
 }
 
@@ -55,7 +64,7 @@ std::shared_ptr<const Answer> Session::filter(Frame& frame, std::uint64_t epoch,
     if (config && config != config_) follow(std::move(config));
     if (epoch > epoch_ || !denoiser_) {
       denoiser_.reset();  // first, so that there are never two histories
-      denoiser_.emplace(config_->denoiser);
+      denoiser_.emplace(config_->denoiser, scratch_);
       if (epoch > epoch_) next_reset_ = ResetReason::kEpoch;
       epoch_ = epoch;
     }
@@ -151,7 +160,7 @@ std::shared_ptr<const SessionConfig> Session::config() const {
   return config_;
 }
 
-std::size_t Session::denoiser_bytes() const {
+SessionBytes Session::denoiser_bytes() const {
   const std::lock_guard lock(mutex_);
   return denoiser_bytes_;
 }
@@ -177,15 +186,18 @@ std::size_t frame_bytes(const DenoiserConfig& config, int credits) {
   return bytes_of(config.planes) * frames + bytes_of(result_planes(config)) * (frames + 1);
 }
 
-std::size_t estimated_denoiser_bytes(const DenoiserConfig& config) {
+SessionBytes estimated_denoiser_bytes(const DenoiserConfig& config) {
   constexpr int kProbeSize = 256;  // pixels; small, but padding is a small part of it
   DenoiserConfig probe = config;
   probe.width = std::min(config.width, kProbeSize);
   probe.height = std::min(config.height, kProbeSize);
   const double area = static_cast<double>(config.width) * config.height;
   const double probe_area = static_cast<double>(probe.width) * probe.height;
-  const auto probe_bytes = static_cast<double>(Denoiser(probe).memory_bytes());
-  return static_cast<std::size_t>(probe_bytes * (area / probe_area));
+  const SessionBytes of_probe = bytes_of(Denoiser(probe));
+  const auto scaled = [&](std::size_t bytes) {
+    return static_cast<std::size_t>(static_cast<double>(bytes) * (area / probe_area));
+  };
+  return {scaled(of_probe.own), scaled(of_probe.scratch)};
 }
 
 }  // namespace holdfast::server

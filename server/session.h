@@ -11,6 +11,7 @@
 
 #include "core/denoiser/denoiser.h"
 #include "server/answer.h"
+#include "server/memory_account.h"
 #include "server/preset_chooser.h"
 #include "server/scheduler.h"
 #include "server/session_config.h"
@@ -31,9 +32,11 @@ class Session {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// `remembered`: answers kept for frames that come again. Throws InputError for a configuration
+  /// `remembered`: answers kept for frames that come again; `scratch`: what the core borrows from,
+  /// shared by sessions; null: one for this session alone. Throws InputError for a configuration
   /// that the core refuses.
-  Session(std::string id, std::string token, SessionConfig config, int remembered);
+  Session(std::string id, std::string token, SessionConfig config, int remembered,
+          std::shared_ptr<ScratchPool> scratch = {});
 
   const std::string& id() const { return id_; }
   const std::string& token() const { return token_; }
@@ -62,8 +65,8 @@ class Session {
   SessionCounters counters() const;
 
   const std::shared_ptr<Strand>& strand() const { return strand_; }
-  /// History and scratch; see Denoiser::memory_bytes.
-  std::size_t denoiser_bytes() const;
+  /// Of the core alone: Denoiser::held_bytes and scratch_bytes.
+  SessionBytes denoiser_bytes() const;
   std::string plan_text() const;
 
  private:
@@ -80,9 +83,10 @@ class Session {
   };
 
   const std::string id_, token_;
+  const std::shared_ptr<ScratchPool> scratch_;
   std::shared_ptr<const SessionConfig> config_;  ///< exchanged under the mutex
   std::optional<Denoiser> denoiser_;             ///< always there but while it is made anew
-  std::size_t denoiser_bytes_;                   ///< under the mutex, as the next
+  SessionBytes denoiser_bytes_;                  ///< under the mutex, as the next
   std::string plan_text_;
   std::optional<PresetChooser> chooser_;  ///< with a budget
   TimePoint last_end_{};                  ///< when the last frame was filtered
@@ -99,9 +103,9 @@ class Session {
 /// remembered and made; results count whether or not they are sent back.
 std::size_t frame_bytes(const DenoiserConfig& config, int credits);
 
-/// What Denoiser::memory_bytes will be, or up to a quarter more, without making one of that size:
-/// buffers grow with the padded pixels, so a small one tells the bytes of a pixel. Throws
-/// InputError for a configuration that the core refuses.
-std::size_t estimated_denoiser_bytes(const DenoiserConfig& config);
+/// What Denoiser::held_bytes and scratch_bytes will be, or up to a quarter more, without making one
+/// of that size: images grow with the padded pixels, so a small one tells the bytes of a pixel.
+/// Throws InputError for a configuration that the core refuses.
+SessionBytes estimated_denoiser_bytes(const DenoiserConfig& config);
 
 }  // namespace holdfast::server

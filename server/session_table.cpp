@@ -19,8 +19,8 @@ std::string mib(std::size_t bytes) {
 
 }  // namespace
 
-SessionTable::SessionTable(SessionLimits limits, Clock clock)
-    : limits_(limits), clock_(std::move(clock)) {}
+SessionTable::SessionTable(SessionLimits limits, Clock clock, int frames_at_once)
+    : limits_(limits), clock_(std::move(clock)), account_(frames_at_once) {}
 
 std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::string& owner) {
   const std::string id = random_hex(kIdBytes);
@@ -29,33 +29,34 @@ std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::s
     const std::lock_guard lock(mutex_);
     check_count(owner);  // before anything is made: a flood of refusals must be cheap
   }
-  const std::size_t frames =
-      frame_bytes(config.denoiser, limits_.credits) + transport_bytes(config);
   admit(id, needed_bytes(config), owner);
   try {
-    auto session =
-        std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config), limits_.credits);
-    settle(id, frames + session->denoiser_bytes());
+    auto session = std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config),
+                                             limits_.credits, scratch_);
+    const SessionBytes has = with_frames(*session->config(), session->denoiser_bytes());
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_.at(id);
+    settle(entry, has);
     entry.session = session;
     entry.life = SessionLife(clock_());
     return session;
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    total_bytes_ -= entries_.at(id).bytes;
+    account_.remove(entries_.at(id).bytes);
     entries_.erase(id);
     throw;
   }
 }
 
-void SessionTable::check_bytes(std::size_t session_bytes, std::size_t total_bytes) const {
-  if (session_bytes > limits_.max_session_bytes)
-    throw RefusedError("the session needs " + mib(session_bytes) + ", but one session may have " +
+/// Called with the mutex held.
+void SessionTable::check_bytes(SessionBytes bytes) const {
+  if (bytes.own > limits_.max_session_bytes)
+    throw RefusedError("the session needs " + mib(bytes.own) + ", but one session may have " +
                            mib(limits_.max_session_bytes),
                        {"max-session-bytes", {}});
-  if (total_bytes > limits_.max_total_bytes)
-    throw RefusedError("with this session all would have " + mib(total_bytes) +
+  const std::size_t total = account_.total_with(bytes);
+  if (total > limits_.max_total_bytes)
+    throw RefusedError("with this session all would have " + mib(total) +
                            ", but the server allows " + mib(limits_.max_total_bytes),
                        {"max-total-bytes", limits_.linger});
 }
@@ -75,61 +76,61 @@ void SessionTable::check_count(const std::string& owner) const {
                        {"max-sessions-per-token", limits_.linger});
 }
 
-void SessionTable::admit(const std::string& id, std::size_t bytes, const std::string& owner) {
+void SessionTable::admit(const std::string& id, SessionBytes bytes, const std::string& owner) {
   const std::lock_guard lock(mutex_);
   check_count(owner);
-  check_bytes(bytes, total_bytes_ + bytes);
+  check_bytes(bytes);
   const TimePoint now = clock_();
   entries_.emplace(id, Entry{nullptr, bytes, 0, SessionLife(now), owner,
                              std::make_shared<SessionRates>(limits_, now),
                              std::make_shared<SessionWatch>(++made_)});
-  total_bytes_ += bytes;
+  account_.add(bytes);
 }
 
-void SessionTable::settle(const std::string& id, std::size_t bytes) {
-  const std::lock_guard lock(mutex_);
-  Entry& entry = entries_.at(id);
-  total_bytes_ += bytes - entry.bytes;
+/// Corrects an account; called with the mutex held.
+void SessionTable::settle(Entry& entry, SessionBytes bytes) {
+  account_.remove(entry.bytes);
+  account_.add(bytes);
   entry.bytes = bytes;
 }
 
+SessionBytes SessionTable::with_frames(const SessionConfig& session, SessionBytes denoiser) const {
+  const std::size_t frames = frame_bytes(session.denoiser, limits_.credits);
+  return {denoiser.own + frames + transport_bytes(session), denoiser.scratch};
+}
+
 /// Without making anything of that size.
-std::size_t SessionTable::needed_bytes(const SessionConfig& session) const {
+SessionBytes SessionTable::needed_bytes(const SessionConfig& session) const {
   const DenoiserConfig& config = session.denoiser;
   if (std::max(config.width, config.height) > limits_.max_dimension)
     throw InputError("size of a frame",
                      "must be at most " + std::to_string(limits_.max_dimension) +
                          " pixels on each side on this server",
                      std::to_string(config.width) + "x" + std::to_string(config.height));
-  return frame_bytes(config, limits_.credits) + transport_bytes(session) +
-         estimated_denoiser_bytes(config);
+  return with_frames(session, estimated_denoiser_bytes(config));
 }
 
 std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& session,
                                             const SessionConfig& config) {
-  const std::size_t bytes = needed_bytes(config);
+  const SessionBytes bytes = needed_bytes(config);
   {
     const std::lock_guard lock(mutex_);
     Entry& entry = live_entry(session->id());
-    check_bytes(bytes, total_bytes_ + bytes);
-    entry.bytes += bytes;
-    entry.reserved += bytes;
-    total_bytes_ += bytes;
+    check_bytes(bytes);
+    account_.add(bytes);
+    entry.reserved += bytes.own;
   }
   return {session.get(), [this, session, bytes](void*) { end_reservation(*session, bytes); }};
 }
 
-void SessionTable::end_reservation(const Session& session, std::size_t bytes) {
-  const std::shared_ptr<const SessionConfig> config = session.config();
-  const std::size_t has = session.denoiser_bytes() +
-                          frame_bytes(config->denoiser, limits_.credits) + transport_bytes(*config);
+void SessionTable::end_reservation(const Session& session, SessionBytes reserved) {
+  const SessionBytes has = with_frames(*session.config(), session.denoiser_bytes());
   const std::lock_guard lock(mutex_);
+  account_.remove(reserved);
   const auto it = entries_.find(session.id());
   if (it == entries_.end() || it->second.session.get() != &session) return;
-  Entry& entry = it->second;
-  entry.reserved -= bytes;
-  total_bytes_ += has + entry.reserved - entry.bytes;
-  entry.bytes = has + entry.reserved;
+  it->second.reserved -= reserved.own;
+  settle(it->second, has);
 }
 
 SessionTable::Entry& SessionTable::live_entry(const std::string& id) {
@@ -175,7 +176,7 @@ void SessionTable::remove(const std::string& id, const std::string& token) {
   std::shared_ptr<Session> dying;  // freed after the lock: histories are large
   const std::lock_guard lock(mutex_);
   dying = checked(id, token).session;
-  total_bytes_ -= entries_.at(id).bytes;
+  account_.remove(entries_.at(id).bytes);
   entries_.erase(id);
 }
 
@@ -187,7 +188,7 @@ int SessionTable::expire() {
     Entry& entry = it->second;
     if (entry.session && entry.life.expired(now, limits_.linger)) {
       dying.push_back(std::move(entry.session));
-      total_bytes_ -= entry.bytes;
+      account_.remove(entry.bytes);
       it = entries_.erase(it);
     } else {
       ++it;
@@ -202,7 +203,8 @@ std::vector<SessionTable::Listed> SessionTable::list() const {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, entry] : entries_)
       if (entry.session)
-        out.push_back({entry.session, entry.watch, entry.bytes, entry.life.streaming()});
+        out.push_back(
+            {entry.session, entry.watch, entry.bytes.own + entry.reserved, entry.life.streaming()});
   }
   std::sort(out.begin(), out.end(), [](const Listed& a, const Listed& b) {
     return a.watch->ordinal() < b.watch->ordinal();
@@ -219,7 +221,7 @@ bool SessionTable::attached(const Session& session) const {
 std::size_t SessionTable::bytes(const Session& session) const {
   const std::lock_guard lock(mutex_);
   const auto it = entries_.find(session.id());
-  return it == entries_.end() ? 0 : it->second.bytes;
+  return it == entries_.end() ? 0 : it->second.bytes.own + it->second.reserved;
 }
 
 std::size_t SessionTable::size() const {
@@ -227,9 +229,19 @@ std::size_t SessionTable::size() const {
   return entries_.size();
 }
 
+std::size_t SessionTable::session_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return account_.own();
+}
+
+std::size_t SessionTable::scratch_bytes() const {
+  const std::lock_guard lock(mutex_);
+  return account_.scratch();
+}
+
 std::size_t SessionTable::total_bytes() const {
   const std::lock_guard lock(mutex_);
-  return total_bytes_;
+  return account_.total();
 }
 
 }  // namespace holdfast::server

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "server/config.h"
+#include "server/memory_account.h"
 #include "server/session.h"
 #include "server/session_life.h"
 #include "server/session_rates.h"
@@ -22,7 +23,9 @@ class SessionTable {
   using TimePoint = SessionLife::TimePoint;
   using Clock = std::function<TimePoint()>;
 
-  explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now);
+  /// `frames_at_once`: frames that are filtered at the same time, at most, of all sessions.
+  explicit SessionTable(SessionLimits limits, Clock clock = std::chrono::steady_clock::now,
+                        int frames_at_once = 1);
 
   /// Makes a session with a random id and token. `owner`: the bearer token that it is made with,
   /// empty if there is none. Its memory is estimated and admitted before
@@ -68,17 +71,20 @@ class SessionTable {
   };
   /// All sessions, in the order in which they were made.
   std::vector<Listed> list() const;
-  /// Bytes accounted to the session; 0 if it was removed.
+  /// Bytes accounted to the session, what it shares not included; 0 if it was removed.
   std::size_t bytes(const Session& session) const;
   std::size_t size() const;
+  /// Accounted to all sessions, each by itself; to the scratch that they share; and both.
+  std::size_t session_bytes() const;
+  std::size_t scratch_bytes() const;
   std::size_t total_bytes() const;
   const SessionLimits& limits() const { return limits_; }
 
  private:
   struct Entry {
     std::shared_ptr<Session> session;  ///< null while it is being made
-    std::size_t bytes = 0;             ///< reservations included
-    std::size_t reserved = 0;          ///< for changes under way
+    SessionBytes bytes;
+    std::size_t reserved = 0;  ///< of its own for changes under way
     SessionLife life;
     std::string owner;  ///< a secret: compared, never shown
     std::shared_ptr<SessionRates> rates;
@@ -87,18 +93,20 @@ class SessionTable {
 
   Entry& live_entry(const std::string& id);
   const Entry& checked(const std::string& id, const std::string& token) const;
-  void admit(const std::string& id, std::size_t bytes, const std::string& owner);
+  void admit(const std::string& id, SessionBytes bytes, const std::string& owner);
   void check_count(const std::string& owner) const;
-  void settle(const std::string& id, std::size_t bytes);
-  void end_reservation(const Session& session, std::size_t bytes);
-  std::size_t needed_bytes(const SessionConfig& session) const;
-  void check_bytes(std::size_t session_bytes, std::size_t total_bytes) const;
+  void settle(Entry& entry, SessionBytes bytes);
+  void end_reservation(const Session& session, SessionBytes reserved);
+  SessionBytes needed_bytes(const SessionConfig& session) const;
+  SessionBytes with_frames(const SessionConfig& session, SessionBytes denoiser) const;
+  void check_bytes(SessionBytes bytes) const;
 
   const SessionLimits limits_;
   const Clock clock_;
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
-  std::size_t total_bytes_ = 0;
+  MemoryAccount account_;
+  const std::shared_ptr<ScratchPool> scratch_ = std::make_shared<ScratchPool>();
   int made_ = 0;  ///< sessions asked for so far
 };
 

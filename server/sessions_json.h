@@ -10,8 +10,8 @@ namespace holdfast::server {
 /// What the live page shows, as JSON: the server, and each session by its ordinal. No id, no token,
 /// no address of a client is in it.
 ///
-///   {"version", "ready", "uptime_s", "streams", "session_bytes", "max_total_bytes", "previews",
-///    "stages": [NAME...],
+///   {"version", "ready", "uptime_s", "streams", "session_bytes", "scratch_bytes",
+///    "max_total_bytes", "previews", "stages": [NAME...],
 ///    "sessions": [{"session", "width", "height", "recipe", "preset", "wire", "streaming",
 ///                  "frames_per_second", "frames", "dropped", "repeated", "errors",
 ///                  "repaired_values", "history_frames", "memory_bytes",

@@ -21,7 +21,8 @@ struct HistoryRoom {
 };
 
 /// Images that the components of one resolution need while they are filtered, one after the other.
-/// Nothing in here outlives a component's turn.
+/// Nothing in here outlives a component's turn. Their memory is lent for a frame; only rooms of
+/// floats have their own, since they change places with histories.
 struct Scratch {
   Channels<float> noisy;      ///< the sanitised input: 1 or 3
   Channels<float> measured;   ///< luminance, its square, then the shadow field
@@ -47,7 +48,20 @@ struct Scratch {
   /// Lets go of images that only components of this resolution, or its radiance, or another format
   /// of their histories would need.
   void trim(const Plan& plan, const Plan::Grid& grid) noexcept;
-  std::size_t bytes() const;
+  static void each_image(auto& s, auto&& visit) {
+    for (auto* images : {&s.noisy, &s.measured, &s.means, &s.footprint, &s.debug}) visit(*images);
+    EffectHistory::each_image(s.effect, visit);
+    WindowScratch::each_image(s.window, visit);
+    BlendScratch::each_image(s.blend, visit);
+    RadianceBlendScratch::each_image(s.radiance_blend, visit);
+    FilterScratch::each_image(s.filter, visit);
+    GradientScratch::each_image(s.gradients, visit);
+    for (auto* room : {&s.visibility, &s.radiance}) {
+      visit(room->before.data);
+      visit(room->now.data);
+    }
+    ConeRoom::each_image(s.cones, visit);
+  }
 
  private:
   void grow_rooms(int width, int height, const Plan& plan, const Plan::Grid& grid);

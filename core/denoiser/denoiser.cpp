@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
@@ -19,34 +20,54 @@
 #include "core/denoiser/switch_plan.h"
 #include "core/denoiser/take_over.h"
 #include "core/frame/error.h"
+#include "core/frame/lent_images.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
 namespace holdfast {
+namespace {
+
+/// Bytes that images of `part` are lent.
+template <class Part>
+std::size_t lent_bytes(const Part& part) {
+  ImageBytes sum;
+  Part::each_image(part, sum);
+  return sum.lent;
+}
+
+}  // namespace
 
 class Denoiser::Impl {
  public:
-  explicit Impl(const DenoiserConfig& c)
-      : config(c),
-        plan(Plan::make(c)),
-        scratch(c.width, c.height, plan, plan.preset.oracle ? Plan::Grid{} : plan.full,
-                c.debug_planes) {
+  Impl(const DenoiserConfig& c, std::shared_ptr<ScratchPool> from)
+      : config(c), plan(Plan::make(c)), pool(std::move(from)) {
+    if (!pool) pool = std::make_shared<ScratchPool>();
     announced = result_planes(c);
-    if (plan.preset.oracle) {
+    if (plan.preset.oracle)
       oracle = make_oracle(config, plan);
-      return;
-    }
+    else
+      make_images(c);
+    need = image_bytes().lent;
+    pool->enter(need);
+  }
+  ~Impl() { pool->leave(need); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void make_images(const DenoiserConfig& c) {
+    constexpr auto kLent = Memory::kLent;
+    scratch = Scratch(c.width, c.height, plan, plan.full, c.debug_planes);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
     for (auto& g : guides) {
       g = Guides(c.width, c.height);
       if (plan.roughness) g.roughness = Channels<float>(c.width, c.height, 1);
       if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
     }
-    if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height);
-    if (plan.history && plan.full.any) surface = SurfaceHistory(c.width, c.height);
+    if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height, kLent);
+    if (plan.history && plan.full.any) surface = SurfaceHistory(c.width, c.height, kLent);
     if (plan.half.any) half = HalfFrame(c, plan);
     for (const std::uint32_t light : plan.shaded_lights)
-      shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height);
+      shaded.add(PlaneId::of_light(PlaneKind::kUnshadowed, light), c.width, c.height, kLent);
     for (const Plan::Entry& entry : plan.components) {
       filters.emplace_back(plan, entry, entry.half ? half_size(c.width) : c.width,
                            entry.half ? half_size(c.height) : c.height);
@@ -87,12 +108,23 @@ class Denoiser::Impl {
       for (const PlaneId id : announced) results.add(id, config.width, config.height);
       oracle->filter(frame, has_past, results, report, timer);
     } else {
+      const Lending lending(*this);
       run_kernels(frame, results, report, timer);
     }
     has_past = true;
     report.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     return report;
   }
+
+  /// Lends memory of the pool to all images that have none, for as long as this lives.
+  struct Lending {
+    explicit Lending(Impl& d) : denoiser(d), loan(d.pool->borrow(d.need)) {
+      each_image(denoiser, LendImages{loan.data()});
+    }
+    ~Lending() { each_image(denoiser, TakeBackImages{}); }
+    Impl& denoiser;
+    const ScratchPool::Loan loan;
+  };
 
   void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report, StageTimer& timer) {
     now = 1 - now;
@@ -134,6 +166,9 @@ class Denoiser::Impl {
     rest = std::move(next_rest);
     config.preset = std::move(preset);
     next_plan.reset();
+    const std::size_t needed_before = std::exchange(need, image_bytes().lent);
+    pool->enter(need);
+    pool->leave(needed_before);
     timer.end("preset", 0);
   }
 
@@ -156,6 +191,7 @@ class Denoiser::Impl {
     followed_full = followed_half = false;
     for (std::size_t k = 0; k < filters.size(); ++k)
       if (!rest.may_pass(k)) follow_surfaces(frame, plan.components[k].half, timer);
+    if (plan.half.any && !followed_half) half.find_quads(guides[now]);
   }
 
   /// Likewise of one resolution, unless that was done.
@@ -287,8 +323,24 @@ class Denoiser::Impl {
     if (values > 0) report.repaired.push_back({plane, values});
   }
 
+  /// Calls `visit` for all images of `d`, an Impl, but those that keep histories.
+  static void each_image(auto& d, auto&& visit) {
+    for (auto& g : d.guides) Guides::each_image(g, visit);
+    Scratch::each_image(d.scratch, visit);
+    SurfaceHistory::each_image(d.surface, visit);
+    HalfFrame::each_image(d.half, visit);
+    for (auto& plane : d.shaded) visit(plane);
+  }
+  ImageBytes image_bytes() const {
+    ImageBytes sum;
+    each_image(*this, sum);
+    return sum;
+  }
+
   DenoiserConfig config;
   Plan plan;
+  std::shared_ptr<ScratchPool> pool;
+  std::size_t need = 0;           ///< bytes that images are lent
   std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
   Guides guides[2];
@@ -308,8 +360,10 @@ class Denoiser::Impl {
   bool has_past = false;
 };
 
-Denoiser::Denoiser(const DenoiserConfig& config) : impl_(std::make_unique<Impl>(config)) {}
-Denoiser::Denoiser(const DenoiserConfig& config, const Denoiser& before) : Denoiser(config) {
+Denoiser::Denoiser(const DenoiserConfig& config, std::shared_ptr<ScratchPool> scratch)
+    : impl_(std::make_unique<Impl>(config, std::move(scratch))) {}
+Denoiser::Denoiser(const DenoiserConfig& config, const Denoiser& before)
+    : Denoiser(config, before.impl_->pool) {
   check_same_scene(config, before.config());
   impl_->go_on_from(*before.impl_);
 }
@@ -327,17 +381,15 @@ void Denoiser::reset() { impl_->has_past = false; }
 
 const DenoiserConfig& Denoiser::config() const { return impl_->config; }
 
-std::size_t Denoiser::memory_bytes() const {
-  std::size_t sum =
-      impl_->scratch.bytes() + impl_->surface.taps.bytes() + impl_->surface.motion.bytes();
-  sum += impl_->half.bytes() + impl_->rest.bytes();
+std::size_t Denoiser::held_bytes() const {
+  std::size_t sum = impl_->image_bytes().owned + impl_->rest.bytes();
   if (impl_->oracle) sum += impl_->oracle->bytes();
-  for (const Guides& g : impl_->guides) sum += g.bytes();
   for (const ComponentFilter& filter : impl_->filters)
     sum += filter.history_bytes() + filter.cone_bytes();
-  for (const Plane& plane : impl_->shaded) sum += plane.bytes();
   return sum;
 }
+
+std::size_t Denoiser::scratch_bytes() const { return impl_->need; }
 
 std::size_t Denoiser::history_bytes() const {
   if (impl_->oracle) return impl_->oracle->bytes();
@@ -356,7 +408,7 @@ std::string Denoiser::plan_text() const {
     if (bytes == 0) return;
     char number[32];
     std::snprintf(number, sizeof number, "%.1f", static_cast<double>(bytes) / pixels);
-    text += what + ": " + number + " B/pixel held\n";
+    text += what + ": " + number + " B/pixel\n";
   };
   if (impl_->plan.history)
     add("kept guides", impl_->guides[0].bytes() + impl_->half.guides().bytes());
@@ -368,13 +420,11 @@ std::string Denoiser::plan_text() const {
   }
   add("kept results, while components rest", impl_->rest.bytes());
   add("all that is kept from frame to frame", history_bytes());
-  add("surface vectors", impl_->surface.taps.bytes() + impl_->surface.motion.bytes());
-  add("scratch", impl_->scratch.bytes());
-  add("all that is at half resolution, but for what components keep", impl_->half.bytes());
-  std::size_t shaded = 0;
-  for (const Plane& plane : impl_->shaded) shaded += plane.bytes();
-  add("unshadowed light", shaded);
-  add("all buffers", memory_bytes());
+  add("all that is held from frame to frame", held_bytes());
+  add("surface vectors, borrowed", lent_bytes(impl_->surface));
+  add("images of components, borrowed", lent_bytes(impl_->scratch));
+  add("all at half resolution, borrowed", lent_bytes(impl_->half));
+  add("all that is borrowed for a frame", scratch_bytes());
   return text;
 }
 

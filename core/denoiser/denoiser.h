@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/denoiser/scratch_pool.h"
 #include "core/frame/frame.h"
 
 namespace holdfast {
@@ -72,18 +73,20 @@ struct FrameReport {
   std::uint64_t non_finite_out = 0;    ///< always 0; counted, not assumed
 };
 
-/// Filters the frames of one session in order. Owns the history; allocates no image per frame after
-/// the first, unless the preset changes. Not thread-safe; one instance serves one session, many
-/// instances share the pool.
+/// Filters the frames of one session in order. Owns the history, and borrows all else from a pool
+/// for as long as it filters a frame; allocates no image per frame after the first, unless the
+/// preset changes. Not thread-safe; one instance serves one session, many instances share the
+/// worker pool and may share the pool of scratch.
 class Denoiser {
  public:
-  /// Throws InputError naming what is wrong with `config`.
-  explicit Denoiser(const DenoiserConfig& config);
+  /// `scratch`: where it borrows; null: a pool of its own. Throws InputError naming what is wrong
+  /// with `config`.
+  explicit Denoiser(const DenoiserConfig& config, std::shared_ptr<ScratchPool> scratch = {});
   /// Goes on where `before` is, with another size, recipe, preset or any other choice, but the same
   /// lights and planes: indices, transforms and history come along, resampled where the size
-  /// differs (core/denoiser/take_over.h). History starts anew from or to preset `reference`, and
-  /// where either recipe keeps none. `before` is as it was; its preset that was to follow is not
-  /// taken. Throws InputError naming what is wrong with `config`.
+  /// differs (core/denoiser/take_over.h). It borrows from the same pool. History starts anew from
+  /// or to preset `reference`, and where either recipe keeps none. `before` is as it was; its
+  /// preset that was to follow is not taken. Throws InputError naming what is wrong with `config`.
   Denoiser(const DenoiserConfig& config, const Denoiser& before);
   ~Denoiser();
   Denoiser(Denoiser&&) noexcept;
@@ -107,9 +110,14 @@ class Denoiser {
 
   /// As it was made, but for the preset, which is that of the last frame.
   const DenoiserConfig& config() const;
-  /// Bytes held for history and scratch.
-  std::size_t memory_bytes() const;
-  /// Of these, what one frame leaves for the next: histories and guides.
+  /// Bytes that `filter` works with: `held_bytes` and `scratch_bytes`.
+  std::size_t memory_bytes() const { return held_bytes() + scratch_bytes(); }
+  /// Bytes held from frame to frame: `history_bytes`, and where histories are floats, the images
+  /// that they change places with: guides, and one history of each number of channels.
+  std::size_t held_bytes() const;
+  /// Bytes borrowed for as long as a frame is filtered.
+  std::size_t scratch_bytes() const;
+  /// Bytes that one frame leaves for the next: histories and guides.
   std::size_t history_bytes() const;
   /// The passes and buffers of this configuration, one per line, with the bytes that a pass moves
   /// and a buffer holds for each pixel of the frame.

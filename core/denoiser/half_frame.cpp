@@ -31,25 +31,26 @@ bool uses_hits(const Plan& plan) {
 HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
     : width_(half_size(config.width)),
       height_(half_size(config.height)),
-      grid_(config.width, config.height),
+      grid_(config.width, config.height, Memory::kLent),
       scratch_(width_, height_, plan, plan.half, config.debug_planes) {
   for (Guides& g : guides_) {
     g = Guides(width_, height_);
     if (plan.roughness) g.roughness = Channels<float>(width_, height_, 1);
     if (plan.motion) g.motion = Channels<float>(width_, height_, 2);
   }
-  if (plan.history) surface_ = SurfaceHistory(width_, height_);
+  constexpr auto kLent = Memory::kLent;
+  if (plan.history) surface_ = SurfaceHistory(width_, height_, kLent);
   for (const Plan::Entry& entry : plan.components)
-    if (entry.half) planes_.add(component_plane(entry.component), width_, height_);
+    if (entry.half) planes_.add(component_plane(entry.component), width_, height_, kLent);
   for (const PlaneId id : config.planes)
     if (id.kind == PlaneKind::kMotion || (is_of_hits(id.kind) && uses_hits(plan)))
-      planes_.add(id, width_, height_);
+      planes_.add(id, width_, height_, kLent);
   if (std::none_of(plan.components.begin(), plan.components.end(),
                    [](const Plan::Entry& entry) { return entry.half && entry.cones; }))
     return;
   for (int k = 0; k < HalfGrid::kQuad; ++k) {
-    samples_[k] = Channels<float>(width_, height_, 3);
-    directions_[k] = Plane({PlaneKind::kIndirectDirection, {}}, width_, height_);
+    samples_[k] = Channels<float>(width_, height_, 3, kLent);
+    directions_[k] = Plane({PlaneKind::kIndirectDirection, {}}, width_, height_, kLent);
   }
 }
 
@@ -58,19 +59,25 @@ void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const Plan
   now_ = 1 - now_;
   has_past_ = has_past;
   scene_.follow_halved(scene);
-  remember(full);
+  take_guides(full, grid_);
   if (!has_past) return;
   const Plane* motion = halved(PlaneKind::kMotion, planes);
   if (motion != nullptr) halve_vectors();
   trace_surface_history({guides_[now_], guides_[1 - now_], scene_}, motion, surface_);
 }
 
-void HalfFrame::remember(const Guides& full) {
+HalfGrid HalfFrame::remember(const Guides& full) {
+  HalfGrid grid(full.view.width, full.view.height);
+  take_guides(full, grid);
+  return grid;
+}
+
+void HalfFrame::take_guides(const Guides& full, HalfGrid& grid) {
   Guides& half = guides_[now_];
   half.view = full.view.halved();
   half.rays = half.view.rays.cast<float>();
-  choose_representatives(full, grid_);
-  halve_guides(full, grid_, half);
+  choose_representatives(full, grid);
+  halve_guides(full, grid, half);
 }
 
 /// The representatives of a plane, or null if the session lacks it.
@@ -136,15 +143,6 @@ void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<f
     pass.out[c] = out.channel(c);
   }
   upsample(pass);
-}
-
-std::size_t HalfFrame::bytes() const {
-  std::size_t sum =
-      grid_.bytes() + surface_.taps.bytes() + surface_.motion.bytes() + scratch_.bytes();
-  for (const Guides& g : guides_) sum += g.bytes();
-  for (const Plane& plane : planes_) sum += plane.bytes();
-  for (int k = 0; k < HalfGrid::kQuad; ++k) sum += samples_[k].bytes() + directions_[k].bytes();
-  return sum;
 }
 
 }  // namespace holdfast

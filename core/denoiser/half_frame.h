@@ -17,10 +17,14 @@ class HalfFrame {
   /// before stay. `has_past`: there is a frame before.
   void advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes, bool has_past);
 
-  /// Takes the guides of a frame that was filtered without this one, as the frame before.
-  void remember(const Guides& full);
-  /// The last frame's quads and guides.
-  const HalfGrid& grid() const { return grid_; }
+  /// Finds the quads of a frame that shows what the last one did, for `take_signal`; all else
+  /// stays.
+  void find_quads(const Guides& full) { choose_representatives(full, grid_); }
+
+  /// Takes the guides of a frame that was filtered without this one, as the frame before. Returns
+  /// its quads.
+  HalfGrid remember(const Guides& full);
+  /// The last frame's guides.
   const Guides& guides() const { return guides_[now_]; }
 
   /// Takes a component's samples `noisy`, of the frame's size, and what of `planes` belongs to
@@ -28,7 +32,7 @@ class HalfFrame {
   ComponentInput take(const Plan::Entry& entry, const Channels<float>& noisy,
                       const PlaneSet& planes, StageTimer& timer);
 
-  /// Takes the samples alone, into `scratch().noisy`, by the grid of the last frame.
+  /// Takes the samples alone, into `scratch().noisy`, by the quads of this frame.
   void take_signal(const Channels<float>& noisy) { halve_signal(noisy, 3, grid_, scratch_.noisy); }
 
   /// Where the component's filter writes.
@@ -37,9 +41,19 @@ class HalfFrame {
   void upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy, Plane& out);
 
   Scratch& scratch() { return scratch_; }
-  std::size_t bytes() const;
+  /// Calls `visit` for all images of `h`, a HalfFrame, of which all but guides are lent.
+  static void each_image(auto& h, auto&& visit) {
+    HalfGrid::each_image(h.grid_, visit);
+    for (auto& guides : h.guides_) Guides::each_image(guides, visit);
+    SurfaceHistory::each_image(h.surface_, visit);
+    Scratch::each_image(h.scratch_, visit);
+    for (auto& plane : h.planes_) visit(plane);
+    for (auto& images : h.samples_) visit(images);
+    for (auto& plane : h.directions_) visit(plane);
+  }
 
  private:
+  void take_guides(const Guides& full, HalfGrid& grid);
   void take_samples(const Channels<float>& noisy, const Plane& directions);
   const Plane* halved(PlaneKind kind, const PlaneSet& planes);
   void halve_vectors();

@@ -58,7 +58,7 @@ bool cones_differ(const Plan& a, const Plan& b, std::size_t k) {
 
 /// A filter of `next` at another resolution than before, with what the old one kept.
 ComponentFilter at_other_resolution(const DenoiserConfig& config, const Plan& next, std::size_t k,
-                                    const Guides* last, const HalfFrame& next_half,
+                                    const Guides* last, const HalfGrid& next_quads,
                                     const PlannedParts& parts) {
   const Plan::Entry& entry = next.components[k];
   const int width = entry.half ? half_size(config.width) : config.width;
@@ -68,7 +68,7 @@ ComponentFilter at_other_resolution(const DenoiserConfig& config, const Plan& ne
   const ComponentHistory before = parts.filters[k].kept();
   ComponentHistory after(width, height, before.channels, before.extras);
   if (entry.half)
-    halve_signal(before.data, before.data.count(), next_half.grid(), after.data);
+    halve_signal(before.data, before.data.count(), next_quads, after.data);
   else
     upsample_history(before, parts.half.guides(), *last, after);
   filter.keep(after);
@@ -89,13 +89,15 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
   const Plan& plan = parts.plan;
   const bool other_half = halves_differ(plan, next);
   HalfFrame half;
+  HalfGrid quads;
   if (other_half && next.half.any) {
     half = HalfFrame(config, next);
-    if (last != nullptr) half.remember(*last);
+    if (last != nullptr) quads = half.remember(*last);
   }
   SurfaceHistory surface;
   const bool needs_surface = next.history && next.full.any;
-  if (needs_surface && !parts.surface.taps) surface = SurfaceHistory(config.width, config.height);
+  if (needs_surface && !parts.surface.taps)
+    surface = SurfaceHistory(config.width, config.height, Memory::kLent);
   std::vector<Replacement> replaced(next.components.size());
   for (std::size_t k = 0; k < replaced.size(); ++k) {
     const Plan::Entry& entry = next.components[k];
@@ -103,7 +105,7 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
     const int height = entry.half ? half_size(config.height) : config.height;
     replaced[k].recipe = next.recipe_of(entry);
     if (entry.half != plan.components[k].half)
-      replaced[k].filter = at_other_resolution(config, next, k, last, half, parts);
+      replaced[k].filter = at_other_resolution(config, next, k, last, quads, parts);
     else if (plan.history_format != next.history_format)
       replaced[k].filter = in_other_format(config, next, k, last, parts);
     else if (cones_differ(plan, next, k))

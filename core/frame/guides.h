@@ -17,8 +17,16 @@ struct Guides {
   PixelRays<float> rays;  ///< of `view`
 
   Guides() = default;
-  Guides(int width, int height) : depth_normal(width, height, 4), id(width, height, 1) {}
+  Guides(int width, int height, Memory memory = Memory::kOwned)
+      : depth_normal(width, height, 4, memory), id(width, height, 1, memory) {}
 
+  /// Calls `visit` for all images of `g`, a Guides.
+  static void each_image(auto& g, auto&& visit) {
+    visit(g.depth_normal);
+    visit(g.id);
+    visit(g.roughness);
+    visit(g.motion);
+  }
   std::size_t bytes() const {
     return depth_normal.bytes() + id.bytes() + roughness.bytes() + motion.bytes();
   }

@@ -18,19 +18,21 @@ std::ptrdiff_t padded_stride(int width) {
   return (lines < kFew || lines % 2 == 1 ? lines : lines + 1) * kLine;
 }
 
-AlignedBuffer::AlignedBuffer(std::size_t bytes)
-    : data_(static_cast<std::byte*>(
-          ::operator new (std::max<std::size_t>(bytes, 64), std::align_val_t{64}))),
-      size_(bytes) {
+AlignedBuffer::AlignedBuffer(std::size_t bytes, Memory memory)
+    : data_(nullptr, Free{memory}), size_(bytes) {
+  if (memory == Memory::kLent) return;
+  data_.reset(static_cast<std::byte*>(
+      ::operator new (std::max<std::size_t>(bytes, 64), std::align_val_t{64})));
   std::memset(data_.get(), 0, bytes);
 }
 
-Plane::Plane(PlaneId id, int width, int height) : id_(id), width_(width), height_(height) {
+Plane::Plane(PlaneId id, int width, int height, Memory memory)
+    : id_(id), width_(width), height_(height) {
   if (width < 1 || height < 1 || width > kMaxDimension || height > kMaxDimension)
     throw InputError("plane " + plane_name(id),
                      "must have width and height in 1.." + std::to_string(kMaxDimension),
                      std::to_string(width) + "x" + std::to_string(height));
-  storage_ = Channels<std::uint32_t>(width, height, channels());
+  storage_ = Channels<std::uint32_t>(width, height, channels(), memory);
 }
 
 ChannelView<float> Plane::channel(int c) {
@@ -73,12 +75,13 @@ const Plane& PlaneSet::at(PlaneId id) const {
   throw InputError("plane " + plane_name(id), "must be present", "missing");
 }
 
-Plane& PlaneSet::add(PlaneId id, int width, int height) {
+Plane& PlaneSet::add(PlaneId id, int width, int height, Memory memory) {
   if (Plane* plane = find(id)) {
-    if (plane->width() != width || plane->height() != height) *plane = Plane(id, width, height);
+    if (plane->width() != width || plane->height() != height)
+      *plane = Plane(id, width, height, memory);
     return *plane;
   }
-  return planes_.emplace_back(id, width, height);
+  return planes_.emplace_back(id, width, height, memory);
 }
 
 void PlaneSet::remove(PlaneId id) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -18,7 +19,7 @@ struct ChannelView {
   T* data = nullptr;
   int width = 0;
   int height = 0;
-  std::ptrdiff_t stride = 0;  ///< in values, >= width
+  std::ptrdiff_t stride = 0;  ///< in values, >= width; 0: all rows are one
 
   T* row(int y) const { return data + y * stride; }
   T& at(int x, int y) const { return data[y * stride + x]; }
@@ -30,17 +31,34 @@ struct ChannelView {
 /// 4096 bytes, which would map every row to the same cache sets.
 std::ptrdiff_t padded_stride(int width);
 
-/// Zero-initialised memory aligned to cache lines.
+/// Whose memory images lie in.
+enum class Memory {
+  kOwned,  ///< their own, zero-initialised
+  kLent,   ///< given by `lend`; there is none before, and it holds anything
+};
+
+/// Memory aligned to cache lines.
 class AlignedBuffer {
  public:
   AlignedBuffer() = default;
-  explicit AlignedBuffer(std::size_t bytes);
+  explicit AlignedBuffer(std::size_t bytes, Memory memory = Memory::kOwned);
   std::byte* data() const { return data_.get(); }
   std::size_t size() const { return size_; }
+  Memory memory() const { return data_.get_deleter().memory; }
+  /// Memory for `size()` bytes, aligned as its own would be; null takes it back. Of lent ones only.
+  void lend(std::byte* data) {
+    assert(memory() == Memory::kLent);
+    data_.reset(data);
+  }
 
  private:
   struct Free {
-    void operator()(std::byte* p) const { ::operator delete (p, std::align_val_t{64}); }
+    Memory memory;
+    Free() : memory(Memory::kOwned) {}
+    explicit Free(Memory m) : memory(m) {}
+    void operator()(std::byte* p) const {
+      if (memory == Memory::kOwned) ::operator delete (p, std::align_val_t{64});
+    }
   };
   std::unique_ptr<std::byte, Free> data_;
   std::size_t size_ = 0;
@@ -51,17 +69,19 @@ template <class T>
 class Channels {
  public:
   Channels() = default;
-  Channels(int width, int height, int channels)
+  Channels(int width, int height, int channels, Memory memory = Memory::kOwned)
       : width_(width),
         height_(height),
         count_(channels),
         stride_(padded_stride(width)),
-        buffer_(static_cast<std::size_t>(stride_ * height * channels) * sizeof(T)) {}
+        buffer_(static_cast<std::size_t>(stride_ * height * channels) * sizeof(T), memory) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
   int count() const { return count_; }
   std::size_t bytes() const { return buffer_.size(); }
+  Memory memory() const { return buffer_.memory(); }
+  void lend(std::byte* data) { buffer_.lend(data); }
   explicit operator bool() const { return count_ > 0; }
 
   ChannelView<T> operator[](int c) {
@@ -83,14 +103,17 @@ class Channels {
 class Plane {
  public:
   Plane() = default;
-  /// A zero-filled plane. Throws InputError unless 1 <= width, height <= kMaxDimension.
-  Plane(PlaneId id, int width, int height);
+  /// A plane, zero-filled if its memory is its own. Throws InputError unless 1 <= width, height <=
+  /// kMaxDimension.
+  Plane(PlaneId id, int width, int height, Memory memory = Memory::kOwned);
 
   PlaneId id() const { return id_; }
   int width() const { return width_; }
   int height() const { return height_; }
   int channels() const { return channel_count(id_.kind); }
   std::size_t bytes() const { return storage_.bytes(); }
+  Memory memory() const { return storage_.memory(); }
+  void lend(std::byte* data) { storage_.lend(data); }
   bool is_uint() const { return plane_traits(id_.kind).scalar == ScalarType::kUint; }
 
   /// Channel of a float plane; asserts the type.
@@ -120,9 +143,9 @@ class PlaneSet {
   Plane* find(PlaneId id);
   /// The plane; throws InputError naming it if it is missing.
   const Plane& at(PlaneId id) const;
-  /// Adds a zero-filled plane, or returns the one that is there if the size agrees (else replaces
-  /// it). References to other planes stay valid.
-  Plane& add(PlaneId id, int width, int height);
+  /// Adds a plane, or returns the one that is there if the size agrees (else replaces it).
+  /// References to other planes stay valid.
+  Plane& add(PlaneId id, int width, int height, Memory memory = Memory::kOwned);
   void remove(PlaneId id);
   void clear() { planes_.clear(); }
 

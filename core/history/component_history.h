@@ -21,8 +21,9 @@ struct ComponentHistory {
   HistoryExtras extras = HistoryExtras::kNone;
 
   ComponentHistory() = default;
-  ComponentHistory(int width, int height, int signal_channels, HistoryExtras with)
-      : data(width, height, channel_count(signal_channels, with)),
+  ComponentHistory(int width, int height, int signal_channels, HistoryExtras with,
+                   Memory memory = Memory::kOwned)
+      : data(width, height, channel_count(signal_channels, with), memory),
         channels(signal_channels),
         extras(with) {}
 

@@ -43,8 +43,8 @@ void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = kMaxFilterChannels;
-  pass.spread_in = std::as_const(window.spread)[0];
-  pass.spread_out = window.spread[1];
+  pass.spread_in = window.all_ones();
+  pass.spread_out = window.spread[0];
   for (int first = 0; first < room.kept.count(); first += kMaxFilterChannels) {
     for (int c = 0; c < kMaxFilterChannels; ++c) {
       pass.in[c] = std::as_const(room.updated)[first + c];
@@ -56,10 +56,10 @@ void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
 
 }  // namespace
 
-ConeRoom::ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format)
-    : updated(width, height, channels_of(colours_of(basis))) {
+ConeRoom::ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format, Memory memory)
+    : updated(width, height, channels_of(colours_of(basis)), memory) {
   if (format == HistoryFormat::kPacked)
-    kept = Channels<float>(width, height, channels_of(colours_of(basis)));
+    kept = Channels<float>(width, height, channels_of(colours_of(basis)), memory);
 }
 
 ConeHistory::ConeHistory(int width, int height, RadianceBasis basis, HistoryFormat format)

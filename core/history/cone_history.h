@@ -32,8 +32,12 @@ struct ConeRoom {
 
   ConeRoom() = default;
   /// `basis`: of cones.
-  ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format);
-  std::size_t bytes() const { return kept.bytes() + updated.bytes(); }
+  ConeRoom(int width, int height, RadianceBasis basis, HistoryFormat format,
+           Memory memory = Memory::kOwned);
+  static void each_image(auto& s, auto&& visit) {
+    visit(s.kept);
+    visit(s.updated);
+  }
 };
 
 /// Incident radiance of every pixel by cone, from frame to frame; what it is good for is to take

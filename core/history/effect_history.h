@@ -15,9 +15,13 @@ struct EffectHistory {
                            ///< shadows how far the blocker moved before the light, in its widths
 
   EffectHistory() = default;
-  EffectHistory(int width, int height)
-      : taps(width, height, 1), motion(width, height, kMotionChannels) {}
-  std::size_t bytes() const { return taps.bytes() + motion.bytes(); }
+  EffectHistory(int width, int height, Memory memory = Memory::kOwned)
+      : taps(width, height, 1, memory), motion(width, height, kMotionChannels, memory) {}
+  /// Calls `visit` for all images of `s`, an EffectHistory; so do the others of this name.
+  static void each_image(auto& s, auto&& visit) {
+    visit(s.taps);
+    visit(s.motion);
+  }
 
   void set(int x, int y, const Taps& t, float motion_x, float motion_y, float trust) {
     taps[0].at(x, y) = t;

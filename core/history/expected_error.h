@@ -32,13 +32,15 @@ struct BlendScratch {
   LightChange change;
 
   BlendScratch() = default;
-  BlendScratch(int width, int height)
-      : candidates(width, height, 4),
-        differences(width, height, 2),
-        bias(width, height, 2),
+  BlendScratch(int width, int height, Memory memory = Memory::kOwned)
+      : candidates(width, height, 4, memory),
+        differences(width, height, 2, memory),
+        bias(width, height, 2, memory),
         activity(width, height),
         change(width, height) {}
-  std::size_t bytes() const { return candidates.bytes() + differences.bytes() + bias.bytes(); }
+  static void each_image(auto& s, auto&& visit) {
+    for (auto* images : {&s.candidates, &s.differences, &s.bias}) visit(*images);
+  }
 };
 
 /// Blends a visibility with the candidate history of least expected error. For a candidate h with n

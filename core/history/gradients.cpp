@@ -45,18 +45,13 @@ void fill_guides(const Guides& now, Guides& strata) {
 
 }  // namespace
 
-GradientScratch::GradientScratch(int frame_width, int frame_height) {
+GradientScratch::GradientScratch(int frame_width, int frame_height, Memory memory) {
   const auto [width, height] = plane_size(kAnyGradient, frame_width, frame_height);
-  guides = Guides(width, height);
-  samples = Channels<float>(width, height, kChannels);
-  filtered = Channels<float>(width, height, kChannels);
-  spread = Channels<float>(width, height, 2);
-  antilag = Channels<float>(width, height, 1);
-}
-
-std::size_t GradientScratch::bytes() const {
-  return guides.depth_normal.bytes() + guides.id.bytes() + samples.bytes() + filtered.bytes() +
-         spread.bytes() + antilag.bytes();
+  guides = Guides(width, height, memory);
+  samples = Channels<float>(width, height, kChannels, memory);
+  filtered = Channels<float>(width, height, kChannels, memory);
+  spread = Channels<float>(width, height, 2, memory);
+  antilag = Channels<float>(width, height, 1, memory);
 }
 
 std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch& scratch) {

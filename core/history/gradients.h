@@ -18,8 +18,11 @@ struct GradientScratch {
 
   GradientScratch() = default;
   /// For frames of that size.
-  GradientScratch(int frame_width, int frame_height);
-  std::size_t bytes() const;
+  GradientScratch(int frame_width, int frame_height, Memory memory = Memory::kOwned);
+  static void each_image(auto& s, auto&& visit) {
+    Guides::each_image(s.guides, visit);
+    for (auto* images : {&s.samples, &s.filtered, &s.spread, &s.antilag}) visit(*images);
+  }
 };
 
 /// A component's gradient plane into `scratch.samples`. A sample that is not finite or negative

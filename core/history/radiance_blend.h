@@ -32,16 +32,17 @@ struct RadianceBlendScratch {
   LightChange change;
 
   RadianceBlendScratch() = default;
-  RadianceBlendScratch(int width, int height, int most_candidates)
-      : candidates(width, height, kPerCandidate * most_candidates),
-        means(width, height, kPerCandidate * most_candidates),
+  RadianceBlendScratch(int width, int height, int most_candidates, Memory memory = Memory::kOwned)
+      : candidates(width, height, kPerCandidate * most_candidates, memory),
+        means(width, height, kPerCandidate * most_candidates, memory),
         activity(width, height),
         change(width, height) {
     for (int k = 0; k < most_candidates; ++k)
-      differences[k] = Channels<float>(width, height, kPerCandidate);
+      differences[k] = Channels<float>(width, height, kPerCandidate, memory);
   }
-  std::size_t bytes() const {
-    return candidates.bytes() + differences[0].bytes() + differences[1].bytes() + means.bytes();
+  static void each_image(auto& s, auto&& visit) {
+    for (auto* images : {&s.candidates, &s.differences[0], &s.differences[1], &s.means})
+      visit(*images);
   }
 };
 

@@ -11,7 +11,12 @@ struct SurfaceHistory {
   Channels<float> motion;  ///< motion_px X and Y; 0 where nothing corresponds
 
   SurfaceHistory() = default;
-  SurfaceHistory(int width, int height) : taps(width, height, 1), motion(width, height, 2) {}
+  SurfaceHistory(int width, int height, Memory memory = Memory::kOwned)
+      : taps(width, height, 1, memory), motion(width, height, 2, memory) {}
+  static void each_image(auto& s, auto&& visit) {
+    visit(s.taps);
+    visit(s.motion);
+  }
 };
 
 /// The pixel's receiver as it was one frame ago.

@@ -21,10 +21,13 @@ struct HalfGrid {
 
   HalfGrid() = default;
   /// For full images of that size.
-  HalfGrid(int width, int height)
-      : share(half_size(width), half_size(height), kQuad),
-        representative(half_size(width), half_size(height), 1) {}
-  std::size_t bytes() const { return share.bytes() + representative.bytes(); }
+  HalfGrid(int width, int height, Memory memory = Memory::kOwned)
+      : share(half_size(width), half_size(height), kQuad, memory),
+        representative(half_size(width), half_size(height), 1, memory) {}
+  static void each_image(auto& s, auto&& visit) {
+    visit(s.share);
+    visit(s.representative);
+  }
 };
 
 /// Chooses each quad's representative: of the pixels on a surface the one whose surface (same id,

@@ -24,15 +24,15 @@ struct FilterScratch {
   ActivityMap activity;       ///< of the signal
 
   FilterScratch() = default;
-  FilterScratch(int width, int height)
-      : even(width, height, 3),
-        odd(width, height, 3),
-        spread(width, height, 2),
-        guide(width, height, 3),
-        footprint(width, height, 3),
+  FilterScratch(int width, int height, Memory memory = Memory::kOwned)
+      : even(width, height, 3, memory),
+        odd(width, height, 3, memory),
+        spread(width, height, 2, memory),
+        guide(width, height, 3, memory),
+        footprint(width, height, 3, memory),
         activity(width, height) {}
-  std::size_t bytes() const {
-    return even.bytes() + odd.bytes() + spread.bytes() + guide.bytes() + footprint.bytes();
+  static void each_image(auto& s, auto&& visit) {
+    for (auto* images : {&s.even, &s.odd, &s.spread, &s.guide, &s.footprint}) visit(*images);
   }
 };
 

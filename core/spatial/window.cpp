@@ -1,13 +1,15 @@
 #include "core/spatial/window.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace holdfast {
 
-WindowScratch::WindowScratch(int width, int height)
-    : between(width, height, kMaxFilterChannels), spread(width, height, 3) {
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) spread[0].at(x, y) = 1.0f;
+WindowScratch::WindowScratch(int width, int height, Memory memory)
+    : between(width, height, kMaxFilterChannels, memory),
+      spread(width, height, 2, memory),
+      ones(width, 1, 1) {
+  std::fill_n(ones[0].data, width, 1.0f);
 }
 
 ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
@@ -26,8 +28,8 @@ ChannelView<const float> window_means(const Guides& guides, const Channels<float
     pass.in[c] = in[c];
     pass.out[c] = scratch.between[c];
   }
-  pass.spread_in = std::as_const(scratch.spread)[0];
-  pass.spread_out = scratch.spread[1];
+  pass.spread_in = scratch.all_ones();
+  pass.spread_out = scratch.spread[0];
   filter_image(pass);
 
   pass.step = second_step;
@@ -35,10 +37,10 @@ ChannelView<const float> window_means(const Guides& guides, const Channels<float
     pass.in[c] = std::as_const(scratch.between)[c];
     pass.out[c] = out[first_out + c];
   }
-  pass.spread_in = std::as_const(scratch.spread)[1];
-  pass.spread_out = scratch.spread[2];
+  pass.spread_in = std::as_const(scratch.spread)[0];
+  pass.spread_out = scratch.spread[1];
   filter_image(pass);
-  return std::as_const(scratch.spread)[2];
+  return std::as_const(scratch.spread)[1];
 }
 
 }  // namespace holdfast

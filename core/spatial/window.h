@@ -7,10 +7,19 @@ namespace holdfast {
 /// Scratch of `window_means`.
 struct WindowScratch {
   Channels<float> between;  ///< kMaxFilterChannels, after the first pass
-  Channels<float> spread;   ///< 3: ones, after the first pass, result
+  Channels<float> spread;   ///< 2: after the first pass, result
+  Channels<float> ones;     ///< one row, its own
 
   WindowScratch() = default;
-  WindowScratch(int width, int height);
+  WindowScratch(int width, int height, Memory memory = Memory::kOwned);
+  static void each_image(auto& s, auto&& visit) {
+    visit(s.between);
+    visit(s.spread);
+  }
+  /// An image of ones: every row is the same one.
+  ChannelView<const float> all_ones() const {
+    return {ones[0].data, spread.width(), spread.height(), 0};
+  }
 };
 
 /// Means of the first `count` channels of `in` into those from `first_out` on of `out`, over a

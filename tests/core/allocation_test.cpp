@@ -64,5 +64,31 @@ TEST(Denoiser, AllocatesNothingOfAnImagesSizePerFrameAfterTheFirst) {
   }
 }
 
+// Sessions of several sizes and recipes that share their scratch, each with a frame in turn.
+TEST(Denoiser, AllocatesNothingOfAnImagesSizeWhereScratchIsShared) {
+  const auto pool = std::make_shared<ScratchPool>();
+  struct Session {
+    DenoiserConfig config;
+    Denoiser denoiser;
+    PlaneSet results;
+  };
+  std::vector<Session> sessions;
+  for (const auto& [width, height] : {std::pair(130, 64), {100, 100}, {260, 70}, {130, 64}})
+    for (const char* history : {"f32", "f16"}) {
+      DenoiserConfig config = test::full_config(width, height);
+      config.history = history;
+      sessions.push_back({config, Denoiser(config, pool), {}});
+    }
+  for (int index = 0; index < 4; ++index)
+    for (Session& session : sessions) {
+      const Frame frame = test::noisy_frame(session.config, index);
+      largest_allocation = 0;
+      session.denoiser.filter(frame, session.results);
+      if (index > 0) {
+        EXPECT_LT(largest_allocation, 4096u) << session.config.width << " frame " << index;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -160,7 +160,7 @@ TEST(Preset, ThePlanSaysWhatPassesMoveAndBuffersHold) {
   const std::string text = Denoiser(config_of("fast")).plan_text();
   EXPECT_EQ(text.rfind("recipe reliable\npreset fast\n", 0), 0u) << text;
   EXPECT_NE(text.find("levels of 3x3 taps, "), std::string::npos) << text;
-  EXPECT_NE(text.find("B/pixel held"), std::string::npos) << text;
+  EXPECT_NE(text.find("all that is borrowed for a frame: "), std::string::npos) << text;
   EXPECT_NE(text.find("kept of light0.visibility as f32: "), std::string::npos) << text;
   // A quarter of the pixels, thus of the bytes.
   DenoiserConfig whole = config_of("fast");

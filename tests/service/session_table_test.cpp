@@ -133,12 +133,16 @@ TEST(SessionMemory, IsEstimatedWithinAQuarterBeforeAnythingIsAllocated) {
     for (const auto& [width, height] : {std::pair(8, 8), {37, 300}, {640, 360}, {1024, 300}}) {
       DenoiserConfig config = test::small_config(width, height);
       config.recipe = recipe;
-      const std::size_t estimate = estimated_denoiser_bytes(config);
-      const std::size_t actual = Denoiser(config).memory_bytes();
-      EXPECT_GE(static_cast<double>(estimate), 0.95 * static_cast<double>(actual))
-          << recipe << width;
-      EXPECT_LE(static_cast<double>(estimate), 1.25 * static_cast<double>(actual))
-          << recipe << width;
+      const SessionBytes estimate = estimated_denoiser_bytes(config);
+      const Denoiser denoiser(config);
+      const auto expect_near = [&](std::size_t estimated, std::size_t bytes) {
+        EXPECT_GE(static_cast<double>(estimated), 0.95 * static_cast<double>(bytes))
+            << recipe << width;
+        EXPECT_LE(static_cast<double>(estimated), 1.25 * static_cast<double>(bytes))
+            << recipe << width;
+      };
+      expect_near(estimate.own, denoiser.held_bytes());
+      expect_near(estimate.scratch, denoiser.scratch_bytes());
     }
 }
 
@@ -149,7 +153,56 @@ TEST(SessionTable, RefusesWhatExceedsTheMemoryOfAllSessions) {
   const auto first = table.create(config_of(200, 200));
   EXPECT_GT(table.total_bytes(), 0u);
   EXPECT_EQ(refusal_of([&] { table.create(config_of(1000, 1000)); }), Refusal::kLimit);
-  EXPECT_EQ(table.bytes(*first), table.total_bytes()) << "a refused session leaves nothing behind";
+  EXPECT_EQ(table.bytes(*first), table.session_bytes())
+      << "a refused session leaves nothing behind";
+  EXPECT_EQ(table.scratch_bytes(), first->denoiser_bytes().scratch);
+}
+
+TEST(SessionTable, CountsScratchOnceForEachFrameThatIsFilteredAtOnce) {
+  SessionTable table({}, std::chrono::steady_clock::now, 3);
+  const auto small = table.create(config_of(40, 40)), large = table.create(config_of(90, 60));
+  const auto another = table.create(config_of(90, 60));
+  EXPECT_EQ(table.scratch_bytes(), 3 * large->denoiser_bytes().scratch);
+  EXPECT_EQ(table.session_bytes(),
+            table.bytes(*small) + table.bytes(*large) + table.bytes(*another));
+  EXPECT_EQ(table.total_bytes(), table.session_bytes() + table.scratch_bytes());
+  table.remove(large->id(), large->token());
+  EXPECT_EQ(table.scratch_bytes(), 3 * large->denoiser_bytes().scratch);
+  table.remove(another->id(), another->token());
+  EXPECT_EQ(table.scratch_bytes(), 3 * small->denoiser_bytes().scratch);
+  table.remove(small->id(), small->token());
+  EXPECT_EQ(table.total_bytes(), 0u);
+}
+
+TEST(SessionTable, RefusesASessionWhoseScratchWouldNotFit) {
+  SessionTable made({});
+  const auto probe = made.create(config_of(200, 200));
+  SessionLimits limits;
+  limits.max_total_bytes = made.session_bytes() + 4 * made.scratch_bytes();
+  SessionTable table(limits, std::chrono::steady_clock::now, 4);
+  EXPECT_EQ(refusal_of([&] { table.create(config_of(220, 220)); }), Refusal::kLimit)
+      << "its own would fit";
+  EXPECT_EQ(table.total_bytes(), 0u);
+  EXPECT_NO_THROW(table.create(config_of(200, 200)));
+}
+
+// While a session changes it has both histories, and scratch is that of the larger.
+TEST(SessionTable, AChangeIsAccountedBesideTheSessionUntilItIsThere) {
+  SessionTable table({}, std::chrono::steady_clock::now, 2);
+  const auto session = table.create(config_of(40, 40));
+  const std::size_t own = table.session_bytes(), scratch = table.scratch_bytes();
+  {
+    const auto reserved = table.reserve(session, config_of(80, 80));
+    EXPECT_GT(table.session_bytes(), 3 * own);
+    EXPECT_EQ(table.bytes(*session), table.session_bytes());
+    EXPECT_GT(table.scratch_bytes(), 3 * scratch);
+  }
+  EXPECT_EQ(table.session_bytes(), own);
+  EXPECT_EQ(table.scratch_bytes(), scratch);
+  auto reserved = table.reserve(session, config_of(80, 80));
+  table.remove(session->id(), session->token());
+  reserved.reset();
+  EXPECT_EQ(table.total_bytes(), 0u) << "also where the session was removed meanwhile";
 }
 
 TEST(TransportMemory, IsThatOfPiecesAndOfCodecsWhereThereAreAny) {
