@@ -170,7 +170,8 @@ OneSignal time_one_signal(BenchFrames& frames, const BenchOptions& options, bool
 BenchResult run_bench(const BenchOptions& options) {
   BenchResult result;
   result.isa = isa_name(selected_isa());
-  BenchFrames frames(options.scene, options.width, options.height);
+  BenchFrames frames(options.scene, options.width, options.height,
+                     options.warm_frames + options.frames);
   if (!options.signals.empty()) frames.keep(options.signals);
   const DenoiserConfig& of_frames = frames.config();
   result.width = of_frames.width;

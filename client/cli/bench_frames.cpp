@@ -11,7 +11,20 @@
 namespace holdfast::cli {
 namespace {
 
-constexpr int kHeld = 4;  // frames in memory: 170 MB each at 1920x1080 with three components
+constexpr int kHeld = 4;       // frames in memory: 170 MB each at 1920x1080 with three components
+constexpr int kMostHeld = 31;  // of small ones in a long stream, whose noise must not repeat soon
+constexpr double kHeldPixels = 4.0 * 1920 * 1080;
+
+int held(int width, int height, int length) {
+  const int fitting = static_cast<int>(kHeldPixels / (static_cast<double>(width) * height));
+  return std::clamp(std::min(length / 2, fitting), kHeld, kMostHeld);
+}
+
+bool same_place(const Frame& a, const Frame& b) {
+  return a.camera.view_from_world == b.camera.view_from_world &&
+         a.camera.clip_from_view == b.camera.clip_from_view && a.objects == b.objects &&
+         a.lights == b.lights;
+}
 
 /// Adds to each frame's table what stands where an earlier frame put it: frames are also played
 /// backwards.
@@ -43,27 +56,30 @@ std::string component_kind(PlaneId id) {
 
 }  // namespace
 
-BenchFrames::BenchFrames(const std::string& scene, int width, int height) {
+BenchFrames::BenchFrames(const std::string& scene, int width, int height, int length) {
   if (std::filesystem::is_directory(scene))
-    read(scene);
+    read(scene, length);
   else
-    render(scene, width, height);
+    render(scene, width, height, length);
   complete_tables(frames_);
+  moves_ = !std::all_of(frames_.begin(), frames_.end(),
+                        [&](const Frame& frame) { return same_place(frame, frames_.front()); });
+  if (!moves_ && frames_.size() % 2 == 0) frames_.pop_back();
   for (const Plane& plane : frames_.front().planes) config_.planes.push_back(plane.id());
 }
 
-void BenchFrames::read(const std::string& dir) {
+void BenchFrames::read(const std::string& dir, int length) {
   const SequenceReader sequence(dir);
   config_.width = sequence.header().width;
   config_.height = sequence.header().height;
   config_.lights = sequence.header().lights;
   for (const std::int64_t index : sequence.frame_indices()) {
-    if (frames_.size() == kHeld) break;
+    if (static_cast<int>(frames_.size()) == held(config_.width, config_.height, length)) break;
     frames_.push_back(sequence.read_frame(index));
   }
 }
 
-void BenchFrames::render(const std::string& scene, int width, int height) {
+void BenchFrames::render(const std::string& scene, int width, int height, int length) {
   scenes::RenderSettings settings;
   settings.width = width;
   settings.height = height;
@@ -71,7 +87,7 @@ void BenchFrames::render(const std::string& scene, int width, int height) {
   config_.width = width;
   config_.height = height;
   config_.lights = renderer.lights();
-  for (int i = 0; i < kHeld; ++i) frames_.push_back(renderer.frame(i));
+  for (int i = 0; i < held(width, height, length); ++i) frames_.push_back(renderer.frame(i));
 }
 
 template <class Wanted>
@@ -116,8 +132,9 @@ void BenchFrames::keep_one_signal() {
 
 const Frame& BenchFrames::at(int step) {
   const int last = static_cast<int>(frames_.size()) - 1;
-  const int phase = last > 0 ? step % (2 * last) : 0;
-  Frame& frame = frames_[static_cast<std::size_t>(std::min(phase, 2 * last - phase))];
+  const int phase = last > 0 ? step % (moves_ ? 2 * last : last + 1) : 0;
+  Frame& frame =
+      frames_[static_cast<std::size_t>(std::min(phase, moves_ ? 2 * last - phase : last))];
   frame.index = step;
   frame.cut = false;
   return frame;

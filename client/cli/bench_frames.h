@@ -8,12 +8,14 @@
 namespace holdfast::cli {
 
 /// A few successive frames in memory, as long a stream as wanted: they are played forwards and
-/// backwards in turn, so that motion never jumps.
+/// backwards in turn, so that motion never jumps. Where nothing moves they are played in a circle
+/// of odd length, so that no even number of frames meets the same noise again and again.
 class BenchFrames {
  public:
   /// Renders `scene` (a built-in scene or a scene JSON file) at width x height, or reads the first
-  /// frames of a sequence if `scene` is a folder; then its own size counts. Throws InputError.
-  BenchFrames(const std::string& scene, int width, int height);
+  /// frames of a sequence if `scene` is a folder; then its own size counts. Holds four of them, or
+  /// more if `length`, of the stream, is longer and memory allows. Throws InputError.
+  BenchFrames(const std::string& scene, int width, int height, int length = 0);
 
   /// Drops the planes of all components but these kinds ("visibility", "glossy", "indirect").
   /// Throws InputError for another name, and for one that no frame brings.
@@ -30,14 +32,15 @@ class BenchFrames {
   const DenoiserConfig& config() const { return config_; }
 
  private:
-  void read(const std::string& dir);
-  void render(const std::string& scene, int width, int height);
+  void read(const std::string& dir, int length);
+  void render(const std::string& scene, int width, int height, int length);
   template <class Wanted>
   void drop_unless(const Wanted& wanted);
   bool has(PlaneKind kind) const;
 
   DenoiserConfig config_;
   std::vector<Frame> frames_;
+  bool moves_ = false;
 };
 
 }  // namespace holdfast::cli
