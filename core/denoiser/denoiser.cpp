@@ -8,6 +8,7 @@
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/composite.h"
+#include "core/denoiser/debug_planes.h"
 #include "core/denoiser/frame_filter.h"
 #include "core/denoiser/frame_input.h"
 #include "core/denoiser/half_frame.h"
@@ -16,9 +17,11 @@
 #include "core/denoiser/stage_timer.h"
 #include "core/denoiser/switch_plan.h"
 #include "core/denoiser/take_over.h"
+#include "core/denoiser/traffic.h"
 #include "core/frame/error.h"
 #include "core/frame/lent_images.h"
 #include "core/frame/plane_size.h"
+#include "core/history/guide_pair.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
@@ -71,11 +74,7 @@ class Denoiser::Impl {
     constexpr auto kLent = Memory::kLent;
     scratch = Scratch(c.width, c.height, plan, plan.full, c.debug_planes);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
-    for (auto& g : guides) {
-      g = Guides(c.width, c.height);
-      if (plan.roughness) g.roughness = Channels<float>(c.width, c.height, 1);
-      if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
-    }
+    guides = GuidePair(c.width, c.height, plan.roughness, plan.motion, plan.history_format);
     if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height, kLent);
     if (plan.history && plan.full.any) surface = SurfaceHistory(c.width, c.height, kLent);
     if (plan.half.any) half = HalfFrame(c, plan);
@@ -94,10 +93,12 @@ class Denoiser::Impl {
     last_index = before.last_index;
     has_past = before.has_past && plan.history && before.plan.history && !oracle && !before.oracle;
     if (!has_past) return;
-    guides[now].view = scene.view();
-    guides[now].rays = guides[now].view.rays.cast<float>();
-    take_over({before.plan, before.guides[before.now], before.half, before.filters},
-              {plan, guides[now], half, filters});
+    Guides last = guides.blank();
+    last.view = scene.view();
+    last.rays = last.view.rays.cast<float>();
+    const Guides last_before = before.guides.last();
+    take_over({before.plan, last_before, before.half, before.filters}, {plan, last, half, filters});
+    guides.set_last(std::move(last));
   }
 
   FrameReport filter(const Frame& frame, PlaneSet& results) {
@@ -139,20 +140,21 @@ class Denoiser::Impl {
   };
 
   void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report, StageTimer& timer) {
-    now = 1 - now;
+    guides.advance(has_past);
     load_guides(frame, report);
-    timer.end("guides", 10);
-    const FramePair frames{guides[now], guides[1 - now], scene};
+    guides.keep();
+    timer.end("guides", guides_traffic(plan.history_format == HistoryFormat::kPacked));
+    const FramePair frames{guides.now(), guides.previous(), scene};
     if (has_past && plan.full.any) {
       trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
       timer.end("surface", 17);
     }
     if (plan.half.any) {
-      half.advance(guides[now], scene, frame.planes, has_past);
+      half.advance(guides.now(), scene, frame.planes, has_past);
       timer.end("half", 16);
     }
     if (!plan.shaded_lights.empty()) {
-      shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
+      shade_lights(guides.now(), scene, config.lights, plan, frame.planes, shaded);
       timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
     }
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
@@ -161,7 +163,7 @@ class Denoiser::Impl {
       run_component(frame, frames, plan.components[k], filters[k], results, report, timer);
     }
     timer.enter("");
-    report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
+    report.non_finite_out = compose(guides.now(), signals, frame.planes, shaded, results);
     timer.end("composite", composite_channels(frame.planes));
   }
 
@@ -178,8 +180,7 @@ class Denoiser::Impl {
 
   void follow_next_plan(StageTimer& timer) {
     std::string preset = next_plan->preset.name;
-    switch_plan(config, *next_plan, has_past ? &guides[now] : nullptr,
-                {plan, scratch, surface, half, filters});
+    switch_plan(config, *next_plan, has_past, {plan, guides, scratch, surface, half, filters});
     config.preset = std::move(preset);
     next_plan.reset();
     const std::size_t needed_before = std::exchange(need, image_bytes().lent);
@@ -189,7 +190,7 @@ class Denoiser::Impl {
   }
 
   void load_guides(const Frame& frame, FrameReport& report) {
-    Guides& out = guides[now];
+    Guides& out = guides.now();
     out.view = scene.view();
     out.rays = out.view.rays.cast<float>();
     const PlaneId depth{PlaneKind::kDepth, {}}, normal{PlaneKind::kNormal, {}};
@@ -216,7 +217,7 @@ class Denoiser::Impl {
       timer.size_images(0.25);
       component_filter.run(input, half.scratch(), half.result(id));
       timer.size_images(1);
-      half.upsample_result(id, guides[now], scratch.noisy, out);
+      half.upsample_result(id, guides.now(), scratch.noisy, out);
       timer.end("upsample", 10);
     } else {
       component_filter.run(full_input(frame, frames, entry, report, timer), scratch, out);
@@ -225,7 +226,8 @@ class Denoiser::Impl {
         component_filter.mean_history_frames() / static_cast<double>(filters.size());
     if (component_filter.changed_share() > 0)
       report.changes.push_back({entry.component, component_filter.changed_share()});
-    if (config.debug_planes) write_debug(entry, results);
+    if (config.debug_planes)
+      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry, results);
   }
 
   /// The input of a component of the frame's own resolution.
@@ -272,30 +274,13 @@ class Denoiser::Impl {
     return count + (planes.find({PlaneKind::kEmission, {}}) ? 3 : 0);
   }
 
-  void write_debug(const Plan::Entry& entry, PlaneSet& results) {
-    const Channels<float>& debug = entry.half ? half.scratch().debug : scratch.debug;
-    const int shrink = entry.half ? 2 : 1;
-    const auto copy = [&](PlaneKind kind, int first, float scale) {
-      Plane& out = results.add({kind, entry.component}, config.width, config.height);
-      for (int c = 0; c < out.channels(); ++c)
-        for_each_row(config.height, [&](int y) {
-          const float* in = debug[first + c].row(y / shrink);
-          float* to = out.channel(c).row(y);
-          for (int x = 0; x < config.width; ++x) to[x] = scale * in[x / shrink];
-        });
-    };
-    copy(PlaneKind::kDebugMotion, kDebugX, static_cast<float>(shrink));
-    copy(PlaneKind::kDebugHistory, kDebugFrames, 1.0f);
-    copy(PlaneKind::kDebugConfidence, kDebugTrust, 1.0f);
-  }
-
   static void count_repairs(FrameReport& report, PlaneId plane, std::uint64_t values) {
     if (values > 0) report.repaired.push_back({plane, values});
   }
 
   /// Calls `visit` for all images of `d`, an Impl, but those that keep histories.
   static void each_image(auto& d, auto&& visit) {
-    for (auto& g : d.guides) Guides::each_image(g, visit);
+    GuidePair::each_image(d.guides, visit);
     Scratch::each_image(d.scratch, visit);
     SurfaceHistory::each_image(d.surface, visit);
     HalfFrame::each_image(d.half, visit);
@@ -313,8 +298,7 @@ class Denoiser::Impl {
   std::size_t need = 0;           ///< bytes that images are lent
   std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
-  Guides guides[2];
-  int now = 0;  ///< index of the current frame's guides
+  GuidePair guides;
   SurfaceHistory surface;
   HalfFrame half;
   std::unique_ptr<FrameFilter> oracle;  ///< in place of all that, with preset `reference`
@@ -362,7 +346,7 @@ std::size_t Denoiser::scratch_bytes() const { return impl_->need; }
 std::size_t Denoiser::history_bytes() const {
   if (impl_->oracle) return impl_->oracle->bytes();
   if (!impl_->plan.history) return 0;
-  std::size_t sum = impl_->guides[0].bytes() + impl_->half.guides().bytes();
+  std::size_t sum = impl_->guides.kept_bytes() + impl_->half.kept_guide_bytes();
   for (const ComponentFilter& filter : impl_->filters)
     sum += filter.history_bytes() + filter.cone_bytes();
   return sum;
@@ -379,7 +363,7 @@ std::string Denoiser::plan_text() const {
     text += what + ": " + number + " B/pixel\n";
   };
   if (impl_->plan.history)
-    add("kept guides", impl_->guides[0].bytes() + impl_->half.guides().bytes());
+    add("kept guides", impl_->guides.kept_bytes() + impl_->half.kept_guide_bytes());
   const std::string format = std::string(" as ") + history_name(impl_->plan.history_format);
   for (const ComponentFilter& filter : impl_->filters) {
     const std::string name = component_name(filter.component());

@@ -1,0 +1,26 @@
+#include "core/denoiser/debug_planes.h"
+
+#include "core/history/component_history.h"
+#include "core/kernels/parallel.h"
+
+namespace holdfast {
+
+void write_debug_planes(const Channels<float>& debug, const Plan::Entry& entry, PlaneSet& results) {
+  const Plane& filtered = results.at(component_plane(entry.component));
+  const int width = filtered.width(), height = filtered.height();
+  const int shrink = entry.half ? 2 : 1;
+  const auto copy = [&](PlaneKind kind, int first, float scale) {
+    Plane& out = results.add({kind, entry.component}, width, height);
+    for (int c = 0; c < out.channels(); ++c)
+      for_each_row(height, [&](int y) {
+        const float* in = debug[first + c].row(y / shrink);
+        float* to = out.channel(c).row(y);
+        for (int x = 0; x < width; ++x) to[x] = scale * in[x / shrink];
+      });
+  };
+  copy(PlaneKind::kDebugMotion, kDebugX, static_cast<float>(shrink));
+  copy(PlaneKind::kDebugHistory, kDebugFrames, 1.0f);
+  copy(PlaneKind::kDebugConfidence, kDebugTrust, 1.0f);
+}
+
+}  // namespace holdfast
