@@ -19,8 +19,10 @@
 #include "core/denoiser/stage_timer.h"
 #include "core/denoiser/switch_plan.h"
 #include "core/denoiser/take_over.h"
+#include "core/denoiser/traffic.h"
 #include "core/frame/error.h"
 #include "core/frame/lent_images.h"
+#include "core/history/guide_pair.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
@@ -58,11 +60,7 @@ class Denoiser::Impl {
     constexpr auto kLent = Memory::kLent;
     scratch = Scratch(c.width, c.height, plan, plan.full, c.debug_planes);
     selected_isa();  // reports a bad HOLDFAST_ISA here rather than in a kernel
-    for (auto& g : guides) {
-      g = Guides(c.width, c.height);
-      if (plan.roughness) g.roughness = Channels<float>(c.width, c.height, 1);
-      if (plan.motion) g.motion = Channels<float>(c.width, c.height, 2);
-    }
+    guides = GuidePair(c.width, c.height, plan.roughness, plan.motion, plan.history_format);
     if (plan.any_gradients) scratch.gradients = GradientScratch(c.width, c.height, kLent);
     if (plan.history && plan.full.any) surface = SurfaceHistory(c.width, c.height, kLent);
     if (plan.half.any) half = HalfFrame(c, plan);
@@ -82,10 +80,12 @@ class Denoiser::Impl {
     last_index = before.last_index;
     has_past = before.has_past && plan.history && before.plan.history && !oracle && !before.oracle;
     if (!has_past) return;
-    guides[now].view = scene.view();
-    guides[now].rays = guides[now].view.rays.cast<float>();
-    take_over({before.plan, before.guides[before.now], before.half, before.filters},
-              {plan, guides[now], half, filters});
+    Guides last = guides.blank();
+    last.view = scene.view();
+    last.rays = last.view.rays.cast<float>();
+    const Guides last_before = before.guides.last();
+    take_over({before.plan, last_before, before.half, before.filters}, {plan, last, half, filters});
+    guides.set_last(std::move(last));
   }
 
   FrameReport filter(const Frame& frame, PlaneSet& results) {
@@ -127,13 +127,14 @@ class Denoiser::Impl {
   };
 
   void run_kernels(const Frame& frame, PlaneSet& results, FrameReport& report, StageTimer& timer) {
-    now = 1 - now;
+    guides.advance(has_past);
     load_guides(frame, report);
-    timer.end("guides", 10);
-    rest.begin_frame(frame, guides[now], guides[1 - now], scene, has_past);
+    guides.keep();
+    timer.end("guides", guides_traffic(plan.history_format == HistoryFormat::kPacked));
+    rest.begin_frame(frame, guides.now(), guides.previous(), scene, has_past);
     follow_surfaces(frame, timer);
     if (!plan.shaded_lights.empty()) {
-      shade_lights(guides[now], scene, config.lights, plan, frame.planes, shaded);
+      shade_lights(guides.now(), scene, config.lights, plan, frame.planes, shaded);
       timer.end("unshadowed", 13 + 3 * static_cast<int>(plan.shaded_lights.size()));
     }
     for (const PlaneId id : announced) results.add(id, config.width, config.height);
@@ -143,7 +144,7 @@ class Denoiser::Impl {
         run_component(frame, k, results, report, timer);
     }
     timer.enter("");
-    report.non_finite_out = compose(guides[now], signals, frame.planes, shaded, results);
+    report.non_finite_out = compose(guides.now(), signals, frame.planes, shaded, results);
     timer.end("composite", composite_channels(frame.planes));
   }
 
@@ -161,8 +162,7 @@ class Denoiser::Impl {
   void follow_next_plan(StageTimer& timer) {
     std::string preset = next_plan->preset.name;
     RestTurns next_rest(config, *next_plan);
-    switch_plan(config, *next_plan, has_past ? &guides[now] : nullptr,
-                {plan, scratch, surface, half, filters});
+    switch_plan(config, *next_plan, has_past, {plan, guides, scratch, surface, half, filters});
     rest = std::move(next_rest);
     config.preset = std::move(preset);
     next_plan.reset();
@@ -173,7 +173,7 @@ class Denoiser::Impl {
   }
 
   void load_guides(const Frame& frame, FrameReport& report) {
-    Guides& out = guides[now];
+    Guides& out = guides.now();
     out.view = scene.view();
     out.rays = out.view.rays.cast<float>();
     const PlaneId depth{PlaneKind::kDepth, {}}, normal{PlaneKind::kNormal, {}};
@@ -191,18 +191,18 @@ class Denoiser::Impl {
     followed_full = followed_half = false;
     for (std::size_t k = 0; k < filters.size(); ++k)
       if (!rest.may_pass(k)) follow_surfaces(frame, plan.components[k].half, timer);
-    if (plan.half.any && !followed_half) half.find_quads(guides[now]);
+    if (plan.half.any && !followed_half) half.find_quads(guides.now());
   }
 
   /// Likewise of one resolution, unless that was done.
   void follow_surfaces(const Frame& frame, bool halved, StageTimer& timer) {
     if (halved && !followed_half) {
-      half.advance(guides[now], scene, frame.planes, has_past);
+      half.advance(guides.now(), scene, frame.planes, has_past);
       timer.end("half", 16);
       followed_half = true;
     }
     if (!halved && !followed_full && has_past) {
-      const FramePair frames{guides[now], guides[1 - now], scene};
+      const FramePair frames{guides.now(), guides.previous(), scene};
       trace_surface_history(frames, frame.planes.find({PlaneKind::kMotion, {}}), surface);
       timer.end("surface", 17);
       followed_full = true;
@@ -222,11 +222,11 @@ class Denoiser::Impl {
     const int channels = channel_count(id.kind);
     const bool holds =
         rest.holds(k,
-                   {entry.half ? half.guides() : guides[now], filters[k].kept_floats(),
+                   {entry.half ? half.guides() : guides.now(), filters[k].kept_floats(),
                     entry.half ? half.scratch().noisy : scratch.noisy, channels},
                    unshadowed);
     if (holds) {
-      rest.repeat(k, guides[now], scratch.noisy, unshadowed, results);
+      rest.repeat(k, guides.now(), scratch.noisy, unshadowed, results);
       report.rested.push_back(entry.component);
       note_history(filters[k], report);
     }
@@ -242,7 +242,7 @@ class Denoiser::Impl {
                      StageTimer& timer) {
     const Plan::Entry& entry = plan.components[k];
     ComponentFilter& component_filter = filters[k];
-    const FramePair frames{guides[now], guides[1 - now], scene};
+    const FramePair frames{guides.now(), guides.previous(), scene};
     const PlaneId id = signals[k];
     Plane& out = results.add(id, config.width, config.height);
     if (entry.half) {
@@ -252,7 +252,7 @@ class Denoiser::Impl {
       timer.size_images(0.25);
       component_filter.run(input, half.scratch(), half.result(id));
       timer.size_images(1);
-      half.upsample_result(id, guides[now], scratch.noisy, out);
+      half.upsample_result(id, guides.now(), scratch.noisy, out);
       timer.end("upsample", 10);
     } else {
       component_filter.run(full_input(frame, frames, entry, report, timer), scratch, out);
@@ -261,8 +261,7 @@ class Denoiser::Impl {
     if (component_filter.changed_share() > 0)
       report.changes.push_back({entry.component, component_filter.changed_share()});
     if (config.debug_planes)
-      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry.component,
-                         config.width, config.height, results);
+      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry, results);
     rest.filtered(k, component_filter, results);
   }
 
@@ -325,7 +324,7 @@ class Denoiser::Impl {
 
   /// Calls `visit` for all images of `d`, an Impl, but those that keep histories.
   static void each_image(auto& d, auto&& visit) {
-    for (auto& g : d.guides) Guides::each_image(g, visit);
+    GuidePair::each_image(d.guides, visit);
     Scratch::each_image(d.scratch, visit);
     SurfaceHistory::each_image(d.surface, visit);
     HalfFrame::each_image(d.half, visit);
@@ -343,8 +342,7 @@ class Denoiser::Impl {
   std::size_t need = 0;           ///< bytes that images are lent
   std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
-  Guides guides[2];
-  int now = 0;  ///< index of the current frame's guides
+  GuidePair guides;
   SurfaceHistory surface;
   HalfFrame half;
   std::unique_ptr<FrameFilter> oracle;  ///< in place of all that, with preset `reference`
@@ -394,7 +392,8 @@ std::size_t Denoiser::scratch_bytes() const { return impl_->need; }
 std::size_t Denoiser::history_bytes() const {
   if (impl_->oracle) return impl_->oracle->bytes();
   if (!impl_->plan.history) return 0;
-  std::size_t sum = impl_->guides[0].bytes() + impl_->half.guides().bytes() + impl_->rest.bytes();
+  std::size_t sum =
+      impl_->guides.kept_bytes() + impl_->half.kept_guide_bytes() + impl_->rest.bytes();
   for (const ComponentFilter& filter : impl_->filters)
     sum += filter.history_bytes() + filter.cone_bytes();
   return sum;
@@ -411,7 +410,7 @@ std::string Denoiser::plan_text() const {
     text += what + ": " + number + " B/pixel\n";
   };
   if (impl_->plan.history)
-    add("kept guides", impl_->guides[0].bytes() + impl_->half.guides().bytes());
+    add("kept guides", impl_->guides.kept_bytes() + impl_->half.kept_guide_bytes());
   const std::string format = std::string(" as ") + history_name(impl_->plan.history_format);
   for (const ComponentFilter& filter : impl_->filters) {
     const std::string name = component_name(filter.component());

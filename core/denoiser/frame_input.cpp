@@ -105,9 +105,12 @@ std::uint64_t load_normals(const Plane& normal, Guides& out) {
 }
 
 void load_ids(const Plane* ids, Channels<std::uint32_t>& out) {
-  if (ids == nullptr) return;  // stays 0
-  for_each_row(ids->height(),
-               [&](int y) { std::copy_n(ids->ids().row(y), ids->width(), out[0].row(y)); });
+  for_each_row(out.height(), [&](int y) {
+    if (ids != nullptr)
+      std::copy_n(ids->ids().row(y), ids->width(), out[0].row(y));
+    else
+      std::fill_n(out[0].row(y), out.width(), 0u);
+  });
 }
 
 std::uint64_t load_roughness(const Plane& roughness, Guides& out) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "core/kernels/parallel.h"
 #include "core/spatial/upsample.h"
@@ -32,12 +33,8 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
     : width_(half_size(config.width)),
       height_(half_size(config.height)),
       grid_(config.width, config.height, Memory::kLent),
+      guides_(width_, height_, plan.roughness, plan.motion, plan.history_format),
       scratch_(width_, height_, plan, plan.half, config.debug_planes) {
-  for (Guides& g : guides_) {
-    g = Guides(width_, height_);
-    if (plan.roughness) g.roughness = Channels<float>(width_, height_, 1);
-    if (plan.motion) g.motion = Channels<float>(width_, height_, 2);
-  }
   constexpr auto kLent = Memory::kLent;
   if (plan.history) surface_ = SurfaceHistory(width_, height_, kLent);
   for (const Plan::Entry& entry : plan.components)
@@ -56,24 +53,25 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
 
 void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes,
                         bool has_past) {
-  now_ = 1 - now_;
   has_past_ = has_past;
   scene_.follow_halved(scene);
-  take_guides(full, grid_);
+  take_guides(full, grid_, guides_.advance(has_past));
+  guides_.keep();
   if (!has_past) return;
   const Plane* motion = halved(PlaneKind::kMotion, planes);
   if (motion != nullptr) halve_vectors();
-  trace_surface_history({guides_[now_], guides_[1 - now_], scene_}, motion, surface_);
+  trace_surface_history({guides_.now(), guides_.previous(), scene_}, motion, surface_);
 }
 
 HalfGrid HalfFrame::remember(const Guides& full) {
   HalfGrid grid(full.view.width, full.view.height);
-  take_guides(full, grid);
+  Guides half = guides_.blank();
+  take_guides(full, grid, half);
+  guides_.set_last(std::move(half));
   return grid;
 }
 
-void HalfFrame::take_guides(const Guides& full, HalfGrid& grid) {
-  Guides& half = guides_[now_];
+void HalfFrame::take_guides(const Guides& full, HalfGrid& grid, Guides& half) {
   half.view = full.view.halved();
   half.rays = half.view.rays.cast<float>();
   choose_representatives(full, grid);
@@ -115,7 +113,7 @@ void HalfFrame::take_samples(const Channels<float>& noisy, const Plane& directio
 
 ComponentInput HalfFrame::take(const Plan::Entry& entry, const Channels<float>& noisy,
                                const PlaneSet& planes, StageTimer& timer) {
-  ComponentInput input{.frames = {guides_[now_], guides_[1 - now_], scene_}, .timer = timer};
+  ComponentInput input{.frames = {guides_.now(), guides_.previous(), scene_}, .timer = timer};
   if (has_past_) input.surface = &surface_;
   if (entry.cones) {
     take_samples(noisy, planes.at({PlaneKind::kIndirectDirection, {}}));
@@ -135,7 +133,7 @@ void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<f
   const Plane& half = planes_.at(id);
   Upsample pass;
   pass.full = &full;
-  pass.half = &guides_[now_];
+  pass.half = &guides_.now();
   pass.channels = half.channels();
   for (int c = 0; c < half.channels(); ++c) {
     pass.in[c] = half.channel(c);

@@ -2,6 +2,7 @@
 
 #include "core/denoiser/component_filter.h"
 #include "core/denoiser/plan.h"
+#include "core/history/guide_pair.h"
 #include "core/spatial/half_grid.h"
 
 namespace holdfast {
@@ -24,8 +25,11 @@ class HalfFrame {
   /// Takes the guides of a frame that was filtered without this one, as the frame before. Returns
   /// its quads.
   HalfGrid remember(const Guides& full);
-  /// The last frame's guides.
-  const Guides& guides() const { return guides_[now_]; }
+  /// The last frame's guides, within a frame.
+  const Guides& guides() const { return guides_.now(); }
+  /// Between frames: a copy of the last one's guides.
+  Guides last_guides() const { return guides_.last(); }
+  std::size_t kept_guide_bytes() const { return guides_.kept_bytes(); }
 
   /// Takes a component's samples `noisy`, of the frame's size, and what of `planes` belongs to
   /// them. Returns its input; `scratch().noisy` holds the quads' means.
@@ -41,10 +45,10 @@ class HalfFrame {
   void upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy, Plane& out);
 
   Scratch& scratch() { return scratch_; }
-  /// Calls `visit` for all images of `h`, a HalfFrame, of which all but guides are lent.
+  /// Calls `visit` for all images of `h`, a HalfFrame.
   static void each_image(auto& h, auto&& visit) {
     HalfGrid::each_image(h.grid_, visit);
-    for (auto& guides : h.guides_) Guides::each_image(guides, visit);
+    GuidePair::each_image(h.guides_, visit);
     SurfaceHistory::each_image(h.surface_, visit);
     Scratch::each_image(h.scratch_, visit);
     for (auto& plane : h.planes_) visit(plane);
@@ -53,15 +57,14 @@ class HalfFrame {
   }
 
  private:
-  void take_guides(const Guides& full, HalfGrid& grid);
+  static void take_guides(const Guides& full, HalfGrid& grid, Guides& half);
   void take_samples(const Channels<float>& noisy, const Plane& directions);
   const Plane* halved(PlaneKind kind, const PlaneSet& planes);
   void halve_vectors();
 
   int width_ = 0, height_ = 0;
   HalfGrid grid_;
-  Guides guides_[2];
-  int now_ = 0;
+  GuidePair guides_;
   bool has_past_ = false;
   SceneMotion scene_;
   SurfaceHistory surface_;

@@ -70,7 +70,7 @@ ComponentFilter at_other_resolution(const DenoiserConfig& config, const Plan& ne
   if (entry.half)
     halve_signal(before.data, before.data.count(), next_quads, after.data);
   else
-    upsample_history(before, parts.half.guides(), *last, after);
+    upsample_history(before, parts.half.last_guides(), *last, after);
   filter.keep(after);
   return filter;
 }
@@ -84,9 +84,17 @@ struct Replacement {
 
 }  // namespace
 
-void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
+void switch_plan(const DenoiserConfig& config, Plan next, bool has_past,
                  const PlannedParts& parts) {
   const Plan& plan = parts.plan;
+  Guides guides;
+  if (has_past) guides = parts.guides.last();
+  const Guides* last = has_past ? &guides : nullptr;
+  const bool other_format = plan.history_format != next.history_format;
+  GuidePair in_next_format;
+  if (other_format)
+    in_next_format =
+        GuidePair(config.width, config.height, next.roughness, next.motion, next.history_format);
   const bool other_half = halves_differ(plan, next);
   HalfFrame half;
   HalfGrid quads;
@@ -106,7 +114,7 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
     replaced[k].recipe = next.recipe_of(entry);
     if (entry.half != plan.components[k].half)
       replaced[k].filter = at_other_resolution(config, next, k, last, quads, parts);
-    else if (plan.history_format != next.history_format)
+    else if (other_format)
       replaced[k].filter = in_other_format(config, next, k, last, parts);
     else if (cones_differ(plan, next, k))
       replaced[k].cones =
@@ -122,6 +130,10 @@ void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
       parts.filters[k] = std::move(*other.filter);
     else
       parts.filters[k].change(std::move(other.recipe), other.cones ? &*other.cones : nullptr);
+  }
+  if (other_format) {
+    if (has_past) in_next_format.set_last(std::move(guides));
+    parts.guides = std::move(in_next_format);
   }
   if (other_half) parts.half = std::move(half);
   if (!needs_surface || surface.taps) parts.surface = std::move(surface);

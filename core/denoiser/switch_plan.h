@@ -10,6 +10,7 @@ namespace holdfast {
 /// What a denoiser holds that depends on its preset.
 struct PlannedParts {
   Plan& plan;
+  GuidePair& guides;
   Scratch& scratch;
   SurfaceHistory& surface;
   HalfFrame& half;
@@ -26,9 +27,7 @@ struct PlannedParts {
 ///   basis, or resolution or format of a component with cones: the cones start anew. They only take
 ///   noise out
 ///                   of new samples, whose mean is right without them
-/// `last`: guides of the frame before; null: no history is worth keeping. If memory runs out,
-/// `parts` are as they were.
-void switch_plan(const DenoiserConfig& config, Plan next, const Guides* last,
-                 const PlannedParts& parts);
+/// `has_past`: history is worth keeping. If memory runs out, `parts` are as they were.
+void switch_plan(const DenoiserConfig& config, Plan next, bool has_past, const PlannedParts& parts);
 
 }  // namespace holdfast

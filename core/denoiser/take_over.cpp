@@ -26,14 +26,19 @@ void take_over(const KeptParts& kept, const TakingParts& taking) {
   const float pixel_share = std::min(1.0f, pixels(kept.guides) / pixels(taking.guides));
   // Squared: ours, tuned on fence, whose thin shadows a coarser history lacks, and glossy-floor.
   const float share = pixel_share * pixel_share;
-  if (taking.plan.half.any) taking.half.remember(taking.guides);
+  Guides half_before, half_after;
+  if (kept.plan.half.any) half_before = kept.half.last_guides();
+  if (taking.plan.half.any) {
+    taking.half.remember(taking.guides);
+    half_after = taking.half.last_guides();
+  }
   for (std::size_t k = 0; k < taking.filters.size(); ++k) {
     const bool was_half = kept.plan.components[k].half, is_half = taking.plan.components[k].half;
     const ComponentHistory from = kept.filters[k].kept();
-    const Guides& guides = is_half ? taking.half.guides() : taking.guides;
+    const Guides& guides = is_half ? half_after : taking.guides;
     ComponentHistory to(guides.view.width, guides.view.height, from.channels,
                         taking.plan.extras_of(from.channels));
-    resample_history(was_half ? kept.half.guides() : kept.guides, guides, share, from, to);
+    resample_history(was_half ? half_before : kept.guides, guides, share, from, to);
     taking.filters[k].keep(to);
   }
 }

@@ -18,6 +18,9 @@ inline int statistics_traffic(int channels, bool footprint) {
          2 * pass_traffic(footprint ? 7 : 2, false, false) + (footprint ? 10 : 3);
 }
 
+/// Planes taken in; and where the frame before is unpacked and this one packed, that.
+inline int guides_traffic(bool packed) { return 10 + (packed ? 2 * (5 + 3) : 0); }
+
 /// Floats, and the same packed: about a third of that.
 inline int packing_traffic(int images) { return images + (images + 2) / 3; }
 

@@ -13,6 +13,7 @@ struct Guides {
   Channels<std::uint32_t> id;    ///< object ids, 0 where none was given
   Channels<float> roughness;     ///< perceptual, 0..1; empty where no component needs it
   Channels<float> motion;        ///< given motion_px X, Y; empty where the client gives none
+  float normal_error = 0;  ///< what a part of a normal may be off by, where it was kept in few bits
   ViewGeometry view;
   PixelRays<float> rays;  ///< of `view`
 

@@ -127,8 +127,10 @@ Taps find_similar_taps(const Guides& previous, float x, float y, const Receiver&
 
 bool same_surface(const Guides& now, const Guides& previous, int x, int y) {
   bool same = now.id[0].at(x, y) == previous.id[0].at(x, y);
-  for (int c = 0; c < now.depth_normal.count(); ++c)
-    same &= now.depth_normal[c].at(x, y) == previous.depth_normal[c].at(x, y);
+  same &= now.depth().at(x, y) == previous.depth().at(x, y);
+  for (int axis = 0; axis < 3; ++axis)
+    same &= std::abs(now.normal(axis).at(x, y) - previous.normal(axis).at(x, y)) <=
+            previous.normal_error;
   return same;
 }
 
@@ -140,7 +142,9 @@ void same_surface_block(const Guides& now, const Guides& previous, int x, int y,
   for (int c = 0; c < now.depth_normal.count(); ++c) {
     const float* a = now.depth_normal[c].row(y) + x;
     const float* b = previous.depth_normal[c].row(y) + x;
-    for (int i = 0; i < count; ++i) same[i] &= static_cast<std::uint8_t>(a[i] == b[i] ? 1 : 0);
+    const float error = c == 0 ? 0.0f : previous.normal_error;
+    for (int i = 0; i < count; ++i)
+      same[i] &= static_cast<std::uint8_t>(std::abs(a[i] - b[i]) <= error ? 1 : 0);
   }
 }
 

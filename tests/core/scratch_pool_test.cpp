@@ -139,6 +139,11 @@ TEST(SharedScratch, NothingOfWhatItHeldShowsWherePlanesLack) {
   EXPECT_TRUE(ignores_what_scratch_holds(config));
   config = test::full_config();
   EXPECT_TRUE(ignores_what_scratch_holds(config)) << "no hits, no roughness";
+  std::erase(config.planes, test::kIdPlane);
+  for (const char* history : {"f32", "f16"}) {
+    config.history = history;
+    EXPECT_TRUE(ignores_what_scratch_holds(config)) << "no ids, " << history;
+  }
   config.lights[0].radiance = {3, 2, 1};
   std::erase(config.planes, test::of_light(PlaneKind::kUnshadowed));
   EXPECT_TRUE(ignores_what_scratch_holds(config)) << "light that is shaded here";
