@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
+#include <google/protobuf/stubs/logging.h>
 
 #include "core/frame/error.h"
 #include "server/options.h"
@@ -40,6 +41,8 @@ int main(int argc, char** argv) {
       std::printf("%s", holdfast::server::options_text(app).c_str());
       return kDone;
     }
+    // A hostile client could fill the log with its complaints of messages; what matters, we log.
+    google::protobuf::SetLogHandler(nullptr);
     const sigset_t signals = block_stop_signals();
     holdfast::server::Server server(config);
     int signal = 0;

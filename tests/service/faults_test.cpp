@@ -91,10 +91,10 @@ TEST_F(Fault, FrozenServerIsWaitedForAndNothingIsLost) {
   const ServerProcess server(socket.address());
   Session session = connect();
   pass(session, 0);
-  server.signal(SIGSTOP);
+  server.freeze();
   session.submit(test::small_frame(config, 1));
   std::this_thread::sleep_for(200ms);
-  EXPECT_FALSE(session.try_receive());
+  ASSERT_FALSE(session.try_receive()) << "there is nothing left to wait for";
   const auto start = Clock::now();
   server.signal(SIGCONT);
   EXPECT_EQ(session.receive()->index, 1);

@@ -22,7 +22,8 @@ using test::Session;
 using test::tell_fault;
 
 // Nothing tells either end: the client finds out when its keepalive has no answer, which is 10 s of
-// silence and 5 s for the answer, opens another connection, and goes on with its history.
+// silence and 5 s for the answer, opens another connection, and goes on with its history: within 2 s
+// on a machine that has time for it.
 TEST_F(Fault, HalfOpenConnectionIsNoticedAndItsSessionGoesOnWithItsHistory) {
   const ServerProcess server(socket.address());
   connect().close();
@@ -40,7 +41,7 @@ TEST_F(Fault, HalfOpenConnectionIsNoticedAndItsSessionGoesOnWithItsHistory) {
   EXPECT_EQ(output->index, 3);
   EXPECT_FALSE(output->history_lost || output->history_reset);
   EXPECT_EQ(session.reconnects(), 1);
-  EXPECT_LT(recovery, 15.0 + 5.0 * kSlowness);
+  EXPECT_LT(recovery, 15.0 + 2.0 * kSlowness);
   tell_fault("a late answer over a new connection", recovery, 0);
 }
 

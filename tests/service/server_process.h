@@ -48,6 +48,12 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   void signal(int number) const { kill(pid_, number); }
+  /// Stops it where it is, until SIGCONT. Without the wait its threads run on for a while: on a
+  /// busy machine for so long that they answer what is sent after this.
+  void freeze() const {
+    signal(SIGSTOP);
+    waitpid(pid_, nullptr, WUNTRACED);
+  }
   /// Its exit code, or minus the signal that ended it.
   int wait() {
     int status = 0;
