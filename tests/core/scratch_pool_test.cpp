@@ -9,6 +9,7 @@
 
 #include "core/frame/plane_size.h"
 #include "tests/core/preset_world.h"
+#include "tests/core/rest_world.h"
 
 namespace holdfast {
 namespace {
@@ -147,6 +148,25 @@ TEST(SharedScratch, NothingOfWhatItHeldShowsWherePlanesLack) {
   config.lights[0].radiance = {3, 2, 1};
   std::erase(config.planes, test::of_light(PlaneKind::kUnshadowed));
   EXPECT_TRUE(ignores_what_scratch_holds(config)) << "light that is shaded here";
+}
+
+TEST(SharedScratch, NothingOfWhatItHeldShowsWhileComponentsRest) {
+  for (const char* preset : {"fast", "balanced"}) {
+    test::RestWorld world(4, 32, 24);
+    world.config.preset = preset;
+    const auto pool = std::make_shared<ScratchPool>();
+    Denoiser spoiled(world.config, pool), alone(world.config);
+    int rested = 0;
+    for (int index = 0; index < test::kAtRest + 12; ++index) {
+      const Frame frame = world.frame(index, index < test::kAtRest + 8 ? 1 : 0.5);
+      PlaneSet one, other;
+      if (index % 16 == 0 || index > test::kAtRest - 3) spoil(*pool, 0xff);
+      rested += static_cast<int>(spoiled.filter(frame, one).rested.size());
+      alone.filter(frame, other);
+      ASSERT_TRUE(test::same_bits(one, other)) << preset << " frame " << index;
+    }
+    EXPECT_GE(rested, 12) << preset;
+  }
 }
 
 // Of any size, recipe and preset, one frame of each by turns; presets change and sizes, too.
