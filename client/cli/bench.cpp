@@ -40,9 +40,8 @@ class Runner {
     const double start = processor_ms();
     FrameReport report = denoiser_.filter(frame, results_);
     if (one_thread_) {  // this thread has done all of it
-      const double share = (processor_ms() - start) / report.ms;
-      report.ms *= share;
-      for (StageTime& stage : report.stages) stage.ms *= share;
+      report.ms = processor_ms() - start;
+      for (StageTime& stage : report.stages) stage.ms = stage.thread_ms;
     }
     if (timed) reports_.push_back(std::move(report));
   }

@@ -81,7 +81,7 @@ class Candidate {
       auto part = std::find_if(parts.begin(), parts.end(),
                                [&](const auto& other) { return other.name == name; });
       if (part == parts.end()) part = parts.insert(parts.end(), {name, 0});
-      part->ms += stage.ms * ms / report.ms;
+      part->ms += stage.thread_ms;  // of which there is one
     }
     stages_.push_back(std::move(parts));
   }

@@ -44,6 +44,8 @@ struct StageTime {
   std::string stage;           ///< "guides", or with its component: "light0.visibility.blend"
   double ms = 0;               ///< wall time
   double bytes_per_pixel = 0;  ///< that its passes read and write, each plane once a pass
+  double thread_ms = 0;        ///< processor time of the thread that calls `filter`, which does all
+                               ///< of the work where no other thread may join
 };
 
 /// Values that were not finite or out of range and were repaired on the way in.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,17 +26,27 @@ class StageTimer {
   /// what must go through memory at least if caches keep nothing from pass to pass.
   void end(const char* stage, int channels_moved) {
     const auto now = Clock::now();
+    const double thread_now_ms = thread_ms();
     out_.push_back({prefix_ + stage, std::chrono::duration<double, std::milli>(now - last_).count(),
-                    4.0 * share_ * channels_moved});
+                    4.0 * share_ * channels_moved, thread_now_ms - last_thread_ms_});
     last_ = now;
+    last_thread_ms_ = thread_now_ms;
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  static double thread_ms() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  }
+
   std::vector<StageTime>& out_;
   std::string prefix_;
   double share_ = 1;
   Clock::time_point last_;
+  double last_thread_ms_ = thread_ms();
 };
 
 }  // namespace holdfast
