@@ -22,8 +22,8 @@ using test::Session;
 using test::tell_fault;
 
 // Nothing tells either end: the client finds out when its keepalive has no answer, which is 10 s of
-// silence and 5 s for the answer, opens another connection, and goes on with its history: within 2 s
-// on a machine that has time for it.
+// silence and 5 s for the answer, opens another connection, and goes on with its history: within 2
+// s on a machine that has time for it.
 TEST_F(Fault, HalfOpenConnectionIsNoticedAndItsSessionGoesOnWithItsHistory) {
   const ServerProcess server(socket.address());
   connect().close();
