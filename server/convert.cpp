@@ -11,6 +11,9 @@
 namespace holdfast::server {
 namespace {
 
+// Names of planes in a session; so many lights have 1551 planes with all that belongs to a frame.
+constexpr int kMaxPlanes = 2048;
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -57,7 +60,15 @@ glm::dvec3 radiance_from(const v1::Light& light) {
   return {light.radiance(0), light.radiance(1), light.radiance(2)};
 }
 
+/// A message has room for half a million names, and each is compared with those before it.
+void check_count(const char* subject, int count) {
+  if (count > kMaxPlanes)
+    throw InputError(subject, "must be at most " + std::to_string(kMaxPlanes),
+                     std::to_string(count));
+}
+
 std::vector<PlaneId> planes_from(const google::protobuf::RepeatedPtrField<std::string>& names) {
+  check_count("number of planes", names.size());
   std::vector<PlaneId> planes;
   for (const std::string& name : names) {
     const std::optional<PlaneId> id = plane_from_name(name);
@@ -72,6 +83,7 @@ std::vector<PlaneId> planes_from(const google::protobuf::RepeatedPtrField<std::s
 /// The planes to send: all, or those asked for, in the core's order.
 std::vector<PlaneId> results_from(const v1::CreateSessionRequest& request,
                                   const DenoiserConfig& config) {
+  check_count("number of result planes", request.result_planes_size());
   std::vector<PlaneId> all = result_planes(config);
   if (request.result_planes().empty()) return all;
   std::vector<std::string> names;

@@ -12,8 +12,8 @@ code=0
 HOLDFAST_FAULT_TABLE=1 "$build/bin/faults_test" >"$log" 2>&1 || code=$?
 printf '%-75s %-68s %9s %5s\n' fault 'what the client saw' recovery lost
 sed -n 's/^FAULT|//p' "$log" | awk -F'|' '{ printf "%-75s %-68s %9s %5s\n", $1, $2, $3, $4 }'
-printf '\n%-75s %s\n' 'beside' "ratio of a session's 90th percentile"
-sed -n 's/^FAIR|//p' "$log" | awk -F'|' '{ printf "%-75s %s\n", $1, $2 }'
+printf '\n%-75s %s\n' 'beside' "ratios of a session's median, 90th and 99th percentile"
+sed -n 's/^FAIR|//p' "$log" | awk -F'|' '{ printf "%-75s %5s %5s %5s\n", $1, $2, $3, $4 }'
 tail -n 1 "$log"
 ((code == 0)) || grep -E '^\[  FAILED|Failure' "$log" >&2
 exit "$code"

@@ -43,9 +43,11 @@ class Fairness : public Fault {
   /// filters: its median may double, and what it waits for besides is one frame of the other.
   template <class Flood>
   void expect_fair(Session& session, const Flood& flood, double most) {
-    double ratio = HUGE_VAL;
-    for (int attempt = 0; attempt < 6 && ratio > most; ++attempt) {
-      const auto alone = times(session, 30);
+    const bool table = std::getenv("HOLDFAST_FAULT_TABLE") != nullptr;
+    const int frames = table ? 200 : 30;
+    Ratios best{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    for (int attempt = 0; attempt < 6 && (best.p90 > most || (table && attempt < 3)); ++attempt) {
+      const auto alone = times(session, frames);
       std::atomic<bool> stop{false}, ready{false};
       std::thread other([&] {
         flood(stop, ready);
@@ -53,18 +55,26 @@ class Fairness : public Fault {
       });
       for (int i = 0; i < 1000 && !ready; ++i) std::this_thread::sleep_for(10ms);
       std::this_thread::sleep_for(100ms);
-      const auto beside = times(session, 30);
+      const auto beside = times(session, frames);
       stop = true;
       other.join();
-      ratio = std::min(ratio, beside[27] / alone[27]);  // of the 90th percentiles
+      const auto at = [&](double share) {
+        const auto k = static_cast<std::size_t>(share * frames);
+        return beside[k] / alone[k];
+      };
+      if (at(0.9) < best.p90) best = {at(0.5), at(0.9), at(0.99)};
     }
-    EXPECT_LT(ratio, most);
-    if (std::getenv("HOLDFAST_FAULT_TABLE") != nullptr)
-      std::printf("FAIR|%s|%.2f\n", ::testing::UnitTest::GetInstance()->current_test_info()->name(),
-                  ratio);
+    EXPECT_LT(best.p90, most);
+    if (table)
+      std::printf("FAIR|%s|%.2f|%.2f|%.2f\n",
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name(), best.p50,
+                  best.p90, best.p99);
   }
 
  private:
+  struct Ratios {
+    double p50, p90, p99;
+  };
   int next_ = 0;
 };
 
