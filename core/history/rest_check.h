@@ -19,7 +19,7 @@ struct RestSignal {
 enum class RestFinding {
   kSame,
   kSudden,  ///< this frame differs: LightChangeRule
-  kSlow,    ///< the frames since the last restart differ: light changes by little a frame
+  kSlow,    ///< frames differ, each by little: light changes by little a frame
 };
 
 /// Whether light still is what a history at rest says, by tiles, without touching a history.
