@@ -216,7 +216,7 @@ class Denoiser::Impl {
     const PlaneId id = signals[k];
     count_repairs(report, id, load_signal(frame.planes.at(id), scratch.noisy));
     timer.end("input", 2 * scratch.noisy.count());
-    if (!rest.may_pass(k)) return false;
+    if (!rest.watches(k)) return false;
     const Plane* unshadowed = unshadowed_of(frame, entry);
     if (entry.half) half.take_signal(scratch.noisy);
     const int channels = channel_count(id.kind);
@@ -225,13 +225,14 @@ class Denoiser::Impl {
                    {entry.half ? half.guides() : guides.now(), filters[k].kept_floats(),
                     entry.half ? half.scratch().noisy : scratch.noisy, channels},
                    unshadowed);
-    if (holds) {
+    const bool passes = holds && rest.may_pass(k);
+    if (passes) {
       rest.repeat(k, guides.now(), scratch.noisy, unshadowed, results);
       report.rested.push_back(entry.component);
       note_history(filters[k], report);
     }
     timer.end("rest", RestTurns::traffic(channels));
-    if (holds) return true;
+    if (passes) return true;
     timer.enter("");
     follow_surfaces(frame, entry.half, timer);
     timer.enter(component_name(entry.component));

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kFewestMoreLevels = -3, kMostMoreLevels = 1;  // 4 levels: 1 .. kMostLevels
 
-// Ours: static at 480x270 costs a third of a moving scene with 4.
-constexpr int kRestTurns = 4, kMostRestTurns = 16;
+// Ours: a scene at rest then costs a quarter of a moving one, core/DESIGN.md.
+constexpr int kRestTurns = 5, kMostRestTurns = 16;
 
 constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::kConesLuminance,
                                     RadianceBasis::kConesColour};

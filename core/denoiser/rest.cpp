@@ -115,8 +115,12 @@ void RestTurns::begin_frame(const Frame& frame, const Guides& now, const Guides&
   if (at_rest_) return;
   for (Member& member : members_) {
     member.settled = 0;
-    member.is_kept = false;
+    member.is_kept = member.changes = false;
   }
+}
+
+bool RestTurns::watches(std::size_t k) const {
+  return turns_ > 1 && at_rest_ && members_[k].settled >= kSettling - kLearning;
 }
 
 bool RestTurns::may_pass(std::size_t k) const {
@@ -128,13 +132,12 @@ bool RestTurns::may_pass(std::size_t k) const {
 
 bool RestTurns::holds(std::size_t k, const RestSignal& signal, const Plane* unshadowed) {
   Member& member = members_[k];
-  if (unshadowed != nullptr && !is_lit_as_before(*unshadowed, signal)) {
-    member.settled = 0;
-    return false;
-  }
+  if (member.settled == kSettling - kLearning) member.check.restart();
   const RestFinding found = member.check.look(signal, member.rule);
-  if (found == RestFinding::kSlow) member.settled = 0;
-  return found == RestFinding::kSame;
+  const bool learning = member.settled < kSettling;  // all that is found may be noise
+  member.changes = (found != RestFinding::kSame && !learning) ||
+                   (unshadowed != nullptr && !is_lit_as_before(*unshadowed, signal));
+  return !member.changes;
 }
 
 void RestTurns::repeat(std::size_t k, const Guides& guides, const Channels<float>& noisy,
@@ -161,12 +164,12 @@ void RestTurns::repeat(std::size_t k, const Guides& guides, const Channels<float
 void RestTurns::filtered(std::size_t k, const ComponentFilter& filter, const PlaneSet& results) {
   if (turns_ <= 1) return;
   Member& member = members_[k];
-  const bool unchanged = at_rest_ && !(filter.changed_share() > 0);
+  const bool unchanged = at_rest_ && !member.changes && !(filter.changed_share() > kLeastChange);
   member.settled = unchanged ? std::min(member.settled + 1, kSettling) : 0;
+  member.changes = false;
   const bool settled =
       member.settled == kSettling &&
       filter.mean_known_frames() >= static_cast<double>(kFullShare * member.most_samples);
-  if (settled && !member.is_kept) member.check.restart();
   member.is_kept = settled;
   if (!settled) return;
   for (Plane& kept : member.kept) {

@@ -23,6 +23,11 @@ class RestTurns {
   /// samples at most, at which it has twice the variance of a mean that has gone on for ever (1/64
   /// to 1/127 of a sample's); after 128 frames more it has 1.02 times that. Ours.
   static constexpr int kSettling = 192;
+  /// Of these, the last ones in which it is learnt how much light seems to change by noise.
+  static constexpr int kLearning = 64;
+  /// Share of the tiles with changed light that ends a rest, or puts it off, if a filter with
+  /// sharper eyes than ours has noticed it: in large images it takes noise for a change in a few.
+  static constexpr double kLeastChange = 0.01;
   /// Of its cap, what a history must count on average: a shadow of thin things keeps some less.
   static constexpr float kFullShare = 0.9f;
 
@@ -36,8 +41,10 @@ class RestTurns {
 
   /// Whether component `k` of the plan is to be passed over, if its light is still the same.
   bool may_pass(std::size_t k) const;
-  /// Whether it is. `signal`: at the component's resolution; `unshadowed`: of a visibility, may be
-  /// null.
+  /// Whether its light is to be looked at.
+  bool watches(std::size_t k) const;
+  /// Whether its light is still the same. `signal`: at the component's resolution; `unshadowed`: of
+  /// a visibility, may be null.
   bool holds(std::size_t k, const RestSignal& signal, const Plane* unshadowed);
   /// Fills the planes of component `k` in `results` as in its last turn; pixels without surface, or
   /// unlit, show `noisy`, of the frame's size.
@@ -60,8 +67,9 @@ class RestTurns {
     PlaneId signal;
     RestCheck check;
     std::vector<Plane> kept;  ///< result planes of its last turn
-    int settled = 0;          ///< frames at rest in which it was filtered and saw no change
+    int settled = 0;          ///< frames at rest in which it was filtered without a change
     bool is_kept = false;     ///< `kept` is of a turn in this rest
+    bool changes = false;     ///< its light does, by the last look
   };
 
   int turns_ = 1;  ///< 1: no component ever rests

@@ -93,22 +93,33 @@ RestCheck::RestCheck(int width, int height)
       tiles_(found_.size()),
       slow_(found_.size()) {}
 
-void RestCheck::restart() { std::fill(tiles_.begin(), tiles_.end(), Tile{}); }
+void RestCheck::restart() {
+  std::fill(tiles_.begin(), tiles_.end(), Tile{});
+  frames_ = 0;
+}
 
-bool RestCheck::Tile::follow(const TileSums& sums, const LightChangeRule& rule) {
+TileFinding RestCheck::Tile::look(const TileSums& sums, const LightChangeRule& rule,
+                                  double usual_weight) {
+  const TileFinding found = sums.verdict(rule, usual2);
+  if (found == TileFinding::kNoHistory) return found;
+  const double error2 = std::max(sums.error2(), usual2);
+  for (int c = 0; c < 3; ++c)
+    lasting[c] += kWeight * (sums.difference[c] / sums.pixels - lasting[c]);
+  lasting_error2 = (1 - kWeight) * (1 - kWeight) * lasting_error2 + kWeight * kWeight * error2;
+  usual2 += usual_weight * (sums.shift2() - usual2);
+  return found;
+}
+
+bool RestCheck::Tile::changes_slowly(const TileSums& sums, const LightChangeRule& rule) const {
   if (!(sums.pixels > 1)) return false;
   double shift2 = 0;
-  for (int c = 0; c < 3; ++c) {
-    difference[c] += kSlowWeight * (sums.difference[c] / sums.pixels - difference[c]);
-    shift2 += difference[c] * difference[c];
-  }
-  error2 =
-      (1 - kSlowWeight) * (1 - kSlowWeight) * error2 + kSlowWeight * kSlowWeight * sums.error2();
+  for (const double d : lasting) shift2 += d * d;
   const double least = double{rule.least_share} * double{rule.least_share} * sums.level2();
-  return shift2 > least && shift2 > kSlowDeviations * kSlowDeviations * error2;
+  return shift2 > least && shift2 > kSlowDeviations * kSlowDeviations * lasting_error2;
 }
 
 RestFinding RestCheck::look(const RestSignal& signal, const LightChangeRule& rule) {
+  frames_ = std::min(frames_ + 1, static_cast<int>(1 / kUsualWeight));
   for_each_index(0, rows_, 1, [&](int row) { look_at_row(row, signal, rule); });
   TileCounts counts;
   for (const TileFinding found : found_) counts.add(found);
@@ -121,8 +132,8 @@ void RestCheck::look_at_row(int row, const RestSignal& signal, const LightChange
   for (int column = 0; column < columns_; ++column) {
     const auto tile = static_cast<std::size_t>(row * columns_ + column);
     const TileSums sums = sums_of(signal, column * kTile, row * kTile);
-    found_[tile] = sums.verdict(rule);
-    slow_[tile] = tiles_[tile].follow(sums, rule) ? 1 : 0;
+    found_[tile] = tiles_[tile].look(sums, rule, 1.0 / frames_);
+    slow_[tile] = tiles_[tile].changes_slowly(sums, rule) ? 1 : 0;
   }
 }
 

@@ -40,9 +40,10 @@ struct TileSums {
   /// Variance of mean d, summed over channels.
   double error2() const { return std::max(square / pixels - shift2(), 0.0) / pixels; }
 
-  TileFinding verdict(const LightChangeRule& rule) const {
+  /// `known_error2`: what is known of error2 besides, at least.
+  TileFinding verdict(const LightChangeRule& rule, double known_error2 = 0) const {
     if (!(pixels > 1)) return TileFinding::kNoHistory;
-    const double shift = shift2(), error = error2();
+    const double shift = shift2(), error = std::max(error2(), known_error2);
     if (!(shift > square_of(double{rule.least_share}) * level2())) return TileFinding::kSame;
     if (shift > square_of(double{rule.tile_deviations}) * error) return TileFinding::kChanged;
     return shift > square_of(double{rule.frame_deviations}) * error ? TileFinding::kSuspect

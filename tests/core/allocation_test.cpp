@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/denoiser_world.h"
+#include "tests/core/rest_world.h"
 
 namespace {
 std::atomic<std::size_t> largest_allocation{0};
@@ -88,6 +89,17 @@ TEST(Denoiser, AllocatesNothingOfAnImagesSizeWhereScratchIsShared) {
         EXPECT_LT(largest_allocation, 4096u) << session.config.width << " frame " << index;
       }
     }
+}
+
+TEST(Denoiser, AllocatesNothingOfAnImagesSizeWhereComponentsRest) {
+  test::RestingSession session(test::RestWorld(4, 130, 64));
+  for (int i = 0; i < 8; ++i) {
+    const Frame frame = session.world.frame(session.next);
+    largest_allocation = 0;
+    session.filter(frame);
+    EXPECT_LT(largest_allocation, 4096u) << i;
+    EXPECT_FALSE(session.report.rested.empty());
+  }
 }
 
 }  // namespace
