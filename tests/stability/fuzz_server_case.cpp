@@ -150,7 +150,8 @@ class ServerFuzz::Impl {
       const v1::FrameResult result = stream.read_result();
       if (result.has_error()) return "a whole frame is refused: " + result.error().message();
       if (!result.planes().empty()) return {};
-      stream.cancel();
+      while (stream.read().message_case() != v1::DenoiseResponse::MESSAGE_NOT_SET) {
+      }
       status = stream.finish();
       if (status.error_code() != grpc::StatusCode::ABORTED) break;
     }
