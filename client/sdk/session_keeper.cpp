@@ -19,10 +19,13 @@ void check(const std::string& address, const grpc::Status& status) {
   if (!status.ok()) throw_status(address, status);
 }
 
-/// Whether another attempt may succeed. A server that dies behind a proxy shows as UNKNOWN.
+/// Whether another attempt may succeed. A server that dies behind a proxy shows as UNKNOWN. Nobody
+/// else knows the session's token, so a newer stream that has it (ABORTED) is an older one of ours:
+/// cancelled, but its Hello was read after that of the one that followed.
 bool passing(const grpc::Status& status) {
   return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
          status.error_code() == grpc::StatusCode::UNKNOWN ||
+         status.error_code() == grpc::StatusCode::ABORTED ||
          status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
 }
 

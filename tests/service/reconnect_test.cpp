@@ -1,3 +1,4 @@
+#include <atomic>
 #include <thread>
 
 #include "tests/service/raw_client.h"
@@ -40,6 +41,67 @@ class Reconnecting : public ::testing::Test {
   DenoiserConfig config = test::small_config();
   std::unique_ptr<server::Server> server;
 };
+
+/// A server whose first stream loses its session to a newer one when it has sent a frame.
+class TakingOverOnce {
+ public:
+  TakingOverOnce() {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
+    builder.RegisterService(&sessions_);
+    builder.RegisterService(&streams_);
+    server_ = builder.BuildAndStart();
+  }
+  ~TakingOverOnce() { server_->Shutdown(std::chrono::system_clock::now()); }
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+
+ private:
+  struct Sessions final : v1::SessionService::Service {
+    grpc::Status CreateSession(grpc::ServerContext*, const v1::CreateSessionRequest*,
+                               v1::CreateSessionResponse* response) override {
+      response->set_session_id("one");
+      response->add_result_planes("composite");
+      return grpc::Status::OK;
+    }
+  };
+  struct Streams final : v1::DenoiseService::Service {
+    using Stream = grpc::ServerReaderWriter<v1::DenoiseResponse, v1::DenoiseRequest>;
+    grpc::Status Denoise(grpc::ServerContext*, Stream* stream) override {
+      for (v1::DenoiseRequest request; stream->Read(&request);) {
+        v1::DenoiseResponse response;
+        if (request.has_frame_end()) {
+          if (frames++ == 0) return {grpc::StatusCode::ABORTED, "a newer stream has the session"};
+          response.mutable_frame_result()->set_index(request.frame_end().index());
+          response.mutable_frame_result()->set_dropped(true);
+        }
+        if (request.has_hello()) response.mutable_welcome()->set_credits(2);
+        if (response.message_case() != v1::DenoiseResponse::MESSAGE_NOT_SET)
+          stream->Write(response);
+      }
+      return grpc::Status::OK;
+    }
+    std::atomic<int> frames{0};
+  };
+  Sessions sessions_;
+  Streams streams_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST_F(Reconnecting, GoesOnWhereAnOlderStreamOfItsOwnHasTakenTheSessionOver) {
+  TakingOverOnce once;
+  SessionOptions options;
+  options.address = once.address();
+  options.width = config.width;
+  options.height = config.height;
+  options.lights = config.lights;
+  options.planes = config.planes;
+  Session session(options);
+  session.submit(test::small_frame(config, 0));
+  EXPECT_TRUE(session.receive()->dropped);
+  EXPECT_EQ(session.reconnects(), 1);
+  session.close();
+}
 
 TEST_F(Reconnecting, WarmsTheHistoryOfANewServerWithTheLastFrames) {
   start();
