@@ -10,6 +10,7 @@
 #include "client/cli/raw_echo.h"
 #include "client/cli/relay.h"
 #include "client/cli/server_child.h"
+#include "proto/shared_memory.h"
 
 namespace holdfast::cli {
 namespace {
@@ -71,9 +72,10 @@ class RepeatedFrame {
     return {std::chrono::duration<double>(Clock::now() - start).count(),
             own_cpu_seconds() + server_.cpu_seconds() - cpu};
   }
-  /// What the server has needed for frames, in frames.
+  /// What the server has needed for frames, in frames. Shared memory was there before the first.
   double memory_frames() const {
-    return static_cast<double>(server_.peak_bytes() - resident_before_) /
+    const std::size_t shared = session_.shared_memory() ? wire::SharedLayout{}.bytes() : 0;
+    return static_cast<double>(server_.peak_bytes() - resident_before_ + shared) /
            static_cast<double>(up_ + down_);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <optional>
 #include <thread>
 
@@ -76,6 +77,9 @@ class Replay {
         progress_("replay " + session_.recipe(), static_cast<std::int64_t>(frames_.size()),
                   options.quiet) {
     std::filesystem::create_directories(options.out);
+    if (!options.access.shared_memory.empty() && !session_.shared_memory())
+      std::fprintf(stderr, "holdfast: no shared memory at %s; planes go through the stream\n",
+                   options.access.shared_memory.c_str());
     result_.recipe = session_.recipe();
     result_.preset = session_.preset();
     result_.width = sequence.header().width;

@@ -37,6 +37,7 @@ class Fault : public ::testing::Test {
     out.height = config.height;
     out.lights = config.lights;
     out.planes = config.planes;
+    out.shared_memory = shared_memory;
     return out;
   }
   /// A session on a server that may just have been started.
@@ -58,6 +59,7 @@ class Fault : public ::testing::Test {
 
   SocketAddress socket;
   DenoiserConfig config = small_config();
+  std::string shared_memory;  ///< path of the server's side socket; empty = none
 };
 
 }  // namespace holdfast::test

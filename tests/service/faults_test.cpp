@@ -19,14 +19,21 @@ using test::ServerProcess;
 using test::Session;
 using test::tell_fault;
 
-TEST_F(Fault, ServerKilledAndStartedAgainIsContinuedWarmWithinASecond) {
-  auto server = std::make_unique<ServerProcess>(socket.address());
+class ServerKilled : public Fault {
+ protected:
+  /// Kills the server under a session and starts it again.
+  void kill_and_continue(const std::vector<std::string>& flags);
+};
+
+void ServerKilled::kill_and_continue(const std::vector<std::string>& flags) {
+  auto server = std::make_unique<ServerProcess>(socket.address(), flags);
   Session session = connect();
+  EXPECT_EQ(session.shared_memory(), !shared_memory.empty());
   for (int i = 0; i < 5; ++i) pass(session, i);
   session.submit(test::small_frame(config, 5));
   server->signal(SIGKILL);
   server->wait();
-  server = std::make_unique<ServerProcess>(socket.address());
+  server = std::make_unique<ServerProcess>(socket.address(), flags);
   connect().close();  // it listens
   const auto start = Clock::now();
   auto output = session.receive();
@@ -40,8 +47,16 @@ TEST_F(Fault, ServerKilledAndStartedAgainIsContinuedWarmWithinASecond) {
   EXPECT_LT(recovery, 1.0 * kSlowness);
   EXPECT_TRUE(output->history_lost);
   EXPECT_FALSE(output->history_reset) << "it was warmed";
+  EXPECT_EQ(session.shared_memory(), !shared_memory.empty());
   session.close();
   tell_fault("the next frame, history_lost", recovery, 0);
+}
+
+TEST_F(ServerKilled, AndStartedAgainIsContinuedWarmWithinASecond) { kill_and_continue({}); }
+
+TEST_F(ServerKilled, WhileItSharesMemoryIsContinuedWithSharedMemoryWithinASecond) {
+  shared_memory = (socket.directory() / "memory").string();
+  kill_and_continue({"--shared-memory", shared_memory});
 }
 
 TEST_F(Fault, ClientKilledInTheMiddleOfAFrameLeavesItsSessionAndOthersAlone) {
