@@ -5,15 +5,14 @@
 
 namespace holdfast {
 
-void write_debug_planes(const Channels<float>& debug, const Plan::Entry& entry, PlaneSet& results) {
-  const Plane& filtered = results.at(component_plane(entry.component));
-  const int width = filtered.width(), height = filtered.height();
-  const int shrink = entry.half ? 2 : 1;
+void write_debug_planes(const Channels<float>& recorded, Component component, int width, int height,
+                        PlaneSet& results) {
+  const int shrink = recorded.width() == width && recorded.height() == height ? 1 : 2;
   const auto copy = [&](PlaneKind kind, int first, float scale) {
-    Plane& out = results.add({kind, entry.component}, width, height);
+    Plane& out = results.add({kind, component}, width, height);
     for (int c = 0; c < out.channels(); ++c)
       for_each_row(height, [&](int y) {
-        const float* in = debug[first + c].row(y / shrink);
+        const float* in = recorded[first + c].row(y / shrink);
         float* to = out.channel(c).row(y);
         for (int x = 0; x < width; ++x) to[x] = scale * in[x / shrink];
       });

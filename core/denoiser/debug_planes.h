@@ -1,11 +1,12 @@
 #pragma once
 
-#include "core/denoiser/plan.h"
+#include "core/frame/plane.h"
 
 namespace holdfast {
 
-/// The debug planes of a component into `results`, from what its filter recorded in the channels
-/// of DebugChannel, at the component's resolution.
-void write_debug_planes(const Channels<float>& debug, const Plan::Entry& entry, PlaneSet& results);
+/// Fills the debug planes of `component` in `results`, of width x height pixels, from what a
+/// temporal pass has recorded by DebugChannel: an image of that size, or of half of it.
+void write_debug_planes(const Channels<float>& recorded, Component component, int width, int height,
+                        PlaneSet& results);
 
 }  // namespace holdfast
