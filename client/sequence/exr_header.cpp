@@ -139,7 +139,7 @@ class HeaderReader {
       tile_ = {number(value, 0), number(value, 4)};
     } else if (name == "compression") {
       need(value.size() == 1);
-      compression_ = value[0];
+      compression_ = static_cast<unsigned char>(value[0]);
     }
   }
 

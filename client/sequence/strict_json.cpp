@@ -61,14 +61,15 @@ std::string StrictObject::text(const std::string& key) {
 
 glm::dmat4 StrictObject::matrix(const std::string& key) {
   const nlohmann::json& value = required(key);
-  const InputError error(subject(key), "must be 16 finite numbers, row by row",
-                         json_excerpt(value));
-  if (!value.is_array() || value.size() != 16) throw error;
+  const auto fail = [&] {
+    throw InputError(subject(key), "must be 16 finite numbers, row by row", json_excerpt(value));
+  };
+  if (!value.is_array() || value.size() != 16) fail();
   double numbers[16];
   for (std::size_t i = 0; i < 16; ++i) {
-    if (!value[i].is_number()) throw error;
+    if (!value[i].is_number()) fail();
     numbers[i] = value[i].get<double>();
-    if (!std::isfinite(numbers[i])) throw error;
+    if (!std::isfinite(numbers[i])) fail();
   }
   return matrix_from_row_major(numbers);
 }

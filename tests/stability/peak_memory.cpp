@@ -18,7 +18,9 @@ std::size_t PeakMemory::bytes() const { return 0; }
 
 #else
 
-// What glibc calls its own.
+// What glibc calls its own, and what takes the place of the rest, whose parameters it names as it
+// may.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-inconsistent-declaration-parameter-name)
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -84,6 +86,7 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t bytes) {
 }
 
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,readability-inconsistent-declaration-parameter-name)
 
 namespace holdfast::test {
 
