@@ -23,15 +23,21 @@ SharedMemoryOffers::Offer SharedMemoryOffers::make(const std::string& session_id
   const auto session = sessions_.find(session_id, token);
   if (!session->config()->shared_memory)
     throw RefusedError("the session was not made with shared memory", Quota{"shared-memory", {}});
+  drop_others(session_id);  // the account has room for one
+  Offer offer{random_hex(kNameBytes), wire::SharedMemory::make()};
   const std::lock_guard lock(mutex_);
-  std::erase_if(waiting_, [&](const auto& entry) {  // the account has room for one
+  waiting_[session_id] = {session, offer};
+  return offer;
+}
+
+/// Those of the session, and of sessions that are gone.
+void SharedMemoryOffers::drop_others(const std::string& session_id) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(waiting_, [&](const auto& entry) {
     const bool over = entry.second.session.expired() || entry.first == session_id;
     if (over) discard(*entry.second.offer.memory);
     return over;
   });
-  Offer offer{random_hex(kNameBytes), wire::SharedMemory::make()};
-  waiting_[session_id] = {session, offer};
-  return offer;
 }
 
 std::shared_ptr<wire::SharedMemory> SharedMemoryOffers::take(const Session& session,

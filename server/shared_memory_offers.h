@@ -33,6 +33,8 @@ class SharedMemoryOffers {
     Offer offer;
   };
 
+  void drop_others(const std::string& session_id);
+
   SessionTable& sessions_;
   std::mutex mutex_;
   std::map<std::string, Waiting> waiting_;  ///< by session
