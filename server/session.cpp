@@ -104,7 +104,8 @@ void Session::choose_preset() {
 
 /// What a frame has cost of the budget: its time in the core, but for that of changing the preset,
 /// and the time for which other sessions kept the core from it. The wait for the session's own
-/// frames before it is the client's pace.
+/// frames before it is the client's pace. A frame in which components rested is cheap under any
+/// preset, and a change of preset would end the rest: it says nothing.
 void Session::note_cost(const FrameReport& report, std::optional<TimePoint> complete,
                         TimePoint start) {
   double core_ms = report.ms;
@@ -115,7 +116,7 @@ void Session::note_cost(const FrameReport& report, std::optional<TimePoint> comp
     waited_ms =
         std::chrono::duration<double, std::milli>(start - std::max(*complete, last_end_)).count();
   last_end_ = std::chrono::steady_clock::now();
-  chooser_->measured(core_ms, waited_ms);
+  if (report.rested.empty()) chooser_->measured(core_ms, waited_ms);
 }
 
 std::shared_ptr<const Answer> Session::drop(const Frame& frame, std::uint64_t epoch) {
