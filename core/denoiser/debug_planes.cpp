@@ -5,9 +5,9 @@
 
 namespace holdfast {
 
-void write_debug_planes(const Channels<float>& recorded, Component component, int width, int height,
-                        PlaneSet& results) {
-  const int shrink = recorded.width() == width && recorded.height() == height ? 1 : 2;
+void write_debug_planes(const Channels<float>& recorded, bool halved, Component component,
+                        int width, int height, PlaneSet& results) {
+  const int shrink = halved ? 2 : 1;
   const auto copy = [&](PlaneKind kind, int first, float scale) {
     Plane& out = results.add({kind, component}, width, height);
     for (int c = 0; c < out.channels(); ++c)

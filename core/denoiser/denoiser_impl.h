@@ -256,8 +256,8 @@ class Denoiser::Impl {
     if (component_filter.changed_share() > 0)
       report.changes.push_back({entry.component, component_filter.changed_share()});
     if (config.debug_planes)
-      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry.component,
-                         config.width, config.height, results);
+      write_debug_planes(entry.half ? half.scratch().debug : scratch.debug, entry.half,
+                         entry.component, config.width, config.height, results);
     rest.filtered(k, component_filter, results);
   }
 

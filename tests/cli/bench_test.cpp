@@ -80,13 +80,14 @@ TEST_F(Bench, TimesOneSignalUnderSvgf) {
   EXPECT_NE(text.find("needs a scene with indirect light or reflections"), std::string::npos);
 }
 
-TEST_F(Bench, MovesRepeatedFramesOverBothLinksBesidePlainSockets) {
+TEST_F(Bench, MovesRepeatedFramesOverEachLinkBesidePlainSockets) {
   const auto json = bench({"--transport", "--rounds", "1", "--size", "100x50"});
   EXPECT_EQ(json["up_bytes"], 32 * 100 * 50);
   EXPECT_EQ(json["frames"], 2);
-  ASSERT_EQ(json["links"].size(), 2u);
+  ASSERT_EQ(json["links"].size(), 3u);
   EXPECT_EQ(json["links"][0]["link"], "tcp");
   EXPECT_EQ(json["links"][1]["link"], "unix");
+  EXPECT_EQ(json["links"][2]["link"], "shared");
   for (const auto& link : json["links"])
     for (const auto& [key, value] : link.items())
       if (key != "link") {
