@@ -50,8 +50,9 @@ class RepeatedFrame {
         server_(server),
         relay_(relay(options)),
         frame_(wall(options.width, options.height)),
+        neighbour_(session_options(options)),
         session_(session_options(options)),
-        resident_before_(server.resident_bytes()) {
+        resident_before_(resident_with_scratch()) {
     if (link_ == "shared" && !session_.shared_memory())
       throw std::runtime_error("the session got no shared memory");
     run(1 + kWarmUp);
@@ -103,6 +104,15 @@ class RepeatedFrame {
     return out;
   }
 
+  /// Bytes of the server once it has filtered a frame of the neighbour: the scratch of the filter is
+  /// the server's and no session's, and is to be there before the session's own frames.
+  std::size_t resident_with_scratch() {
+    neighbour_.submit(frame_);
+    if (const auto output = neighbour_.receive(); !output || output->error)
+      throw std::runtime_error("the first frame got no answer");
+    return server_.resident_bytes();
+  }
+
   void run(int frames) {
     for (int sent = 0, received = 0; received < frames;) {
       if (sent < frames && session_.try_submit(frame_)) {
@@ -122,7 +132,7 @@ class RepeatedFrame {
   const ServerChild& server_;
   const std::unique_ptr<Relay> relay_;
   const std::shared_ptr<const Frame> frame_;
-  client::Session session_;
+  client::Session neighbour_, session_;
   const std::size_t resident_before_;
   std::size_t up_ = 0, down_ = 0;
   int answered_ = 0;
