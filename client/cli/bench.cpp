@@ -1,7 +1,6 @@
 #include "client/cli/bench.h"
 
 #include <algorithm>
-#include <ctime>
 #include <iterator>
 #include <map>
 
@@ -9,6 +8,8 @@
 #include <tbb/info.h>
 
 #include "client/cli/bench_frames.h"
+#include "client/cli/percentiles.h"
+#include "client/cli/thread_time.h"
 #include "core/kernels/isa.h"
 
 namespace holdfast::cli {
@@ -17,19 +18,6 @@ namespace {
 constexpr int kLeastWarmUp = 2;  // frames: the first has no history, the second fills all buffers
 constexpr int kReferenceFrames = 2;  // timed frames of the scalar kernels
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Processor time of this thread, ms.
-double processor_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
 /// One configuration at work.
 class Runner {
  public:
@@ -37,10 +25,10 @@ class Runner {
       : denoiser_(config), one_thread_(one_thread) {}
 
   void filter(const Frame& frame, bool timed) {
-    const double start = processor_ms();
+    const double start = thread_ms();
     FrameReport report = denoiser_.filter(frame, results_);
     if (one_thread_) {  // this thread has done all of it
-      report.ms = processor_ms() - start;
+      report.ms = thread_ms() - start;
       for (StageTime& stage : report.stages) stage.ms = stage.thread_ms;
     }
     if (timed) reports_.push_back(std::move(report));

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <holdfast/client.h>
 
+#include "client/cli/percentiles.h"
 #include "client/cli/raw_echo.h"
 #include "client/cli/relay.h"
 #include "client/cli/server_child.h"
@@ -104,8 +105,8 @@ class RepeatedFrame {
     return out;
   }
 
-  /// Bytes of the server once it has filtered a frame of the neighbour: the scratch of the filter is
-  /// the server's and no session's, and is to be there before the session's own frames.
+  /// Bytes of the server once it has filtered a frame of the neighbour: the scratch of the filter
+  /// is the server's and no session's, and is to be there before the session's own frames.
   std::size_t resident_with_scratch() {
     neighbour_.submit(frame_);
     if (const auto output = neighbour_.receive(); !output || output->error)
@@ -137,12 +138,6 @@ class RepeatedFrame {
   std::size_t up_ = 0, down_ = 0;
   int answered_ = 0;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 LinkResult measure_link(RepeatedFrame& session, const TransportOptions& options) {
   const double gb = 1e-9 * static_cast<double>(session.up() + session.down()) * options.frames;

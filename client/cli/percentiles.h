@@ -16,6 +16,13 @@ inline double percentile(std::vector<double> values, double fraction) {
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
+/// The middle one, of an even number the upper one; there must be one.
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// {"p50", "p95", "p99"} of the values.
 inline nlohmann::ordered_json percentiles(const std::vector<double>& values) {
   return {{"p50", percentile(values, 0.50)},

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 
 #include <tbb/global_control.h>
 
+#include "client/cli/percentiles.h"
 #include "client/cli/progress.h"
 #include "client/cli/study_sequence.h"
+#include "client/cli/thread_time.h"
 #include "client/cli/trade_points.h"
 #include "client/cli/wire_trip.h"
 #include "client/measure/layer_meter.h"
@@ -21,19 +22,6 @@ namespace holdfast::cli {
 namespace {
 
 constexpr std::size_t kWarmUp = 2;  // frames: the first has no history, the second fills buffers
-
-/// Processor time of this thread, ms.
-double processor_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The frame at hand as it arrives under one wire profile.
 class WiredFrames {
@@ -66,9 +54,9 @@ class Candidate {
       : denoiser_(config), frames_(frames), results_trip_(frames.profile().result) {}
 
   void filter(bool timed) {
-    const double start = processor_ms();
+    const double start = thread_ms();
     const FrameReport report = denoiser_.filter(frames_.arrived(), filtered_);
-    const double ms = processor_ms() - start;
+    const double ms = thread_ms() - start;
     wire_bytes_ +=
         frames_.coded_bytes() + static_cast<double>(results_trip_.carry(filtered_, results_));
     ++frames_seen_;

@@ -1,7 +1,6 @@
 #include "client/cli/study_wire.h"
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "client/cli/embedded_server.h"
 #include "client/cli/percentiles.h"
 #include "client/cli/progress.h"
+#include "client/cli/thread_time.h"
 #include "client/cli/wire_trip.h"
 #include "client/measure/judged.h"
 #include "client/measure/layer_meter.h"
@@ -18,13 +18,6 @@
 
 namespace holdfast::cli {
 namespace {
-
-/// CPU time of this thread, nanoseconds.
-double thread_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
 
 /// Costs of one direction: encodes and decodes frames as both ends of a stream do.
 class CostMeter {
@@ -37,13 +30,13 @@ class CostMeter {
     for (const PlaneId id : ids) {
       const Plane& plane = planes.at(id);
       WireCost& sum = sums_[id];
-      const double start = thread_ns();
+      const double start = 1e6 * thread_ms();
       trip_.encode(plane);
-      const double middle = thread_ns();
+      const double middle = 1e6 * thread_ms();
       Plane& decoded = decoded_.add(id, plane.width(), plane.height());
-      const double restart = thread_ns();  // what `add` allocates is not counted
+      const double restart = 1e6 * thread_ms();  // what `add` allocates is not counted
       trip_.decode(decoded);
-      const double decode_ns = thread_ns() - restart;
+      const double decode_ns = 1e6 * thread_ms() - restart;
       sum.encode_ns += middle - start;
       sum.decode_ns += decode_ns;
       encode += middle - start;
