@@ -10,6 +10,10 @@
 namespace holdfast {
 namespace {
 
+// A sum of weights whose square is still a float. A pixel has less only where rounding takes its
+// own point off its plane, as under pixels of 1e-9 m some metres away: it then stays as it is.
+constexpr float kLeastWeight = 1e-15f;
+
 /// A row, and the logarithms of its kernel's weights at distance 0, 1 and 2.
 struct RowPass {
   const FilterRow& row;
@@ -107,7 +111,8 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     const float* __restrict in = a.in[c].row(a.y) + x0;
     float* __restrict out = a.out[c].row(a.y) + x0;
     for (int i = 0; i < count; ++i)
-      out[i] = depth[i] > 0.0f && b.weight_sum[i] > 0.0f ? b.sum[c][i] / b.weight_sum[i] : in[i];
+      out[i] =
+          depth[i] > 0.0f && b.weight_sum[i] > kLeastWeight ? b.sum[c][i] / b.weight_sum[i] : in[i];
   }
   const float* __restrict in = a.spread_in.row(a.y) + x0;
   float* __restrict out = a.spread_out.row(a.y) + x0;
@@ -115,7 +120,7 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     const float squared = b.weight_sum[i] * b.weight_sum[i];
     const float value =
         kSpread == Spread::kSamples ? squared / b.spread_sum[i] : b.spread_sum[i] / squared;
-    out[i] = depth[i] > 0.0f && b.weight_sum[i] > 0.0f ? value : in[i];
+    out[i] = depth[i] > 0.0f && b.weight_sum[i] > kLeastWeight ? value : in[i];
   }
 }
 

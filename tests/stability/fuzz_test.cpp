@@ -21,5 +21,11 @@ TEST(Fuzz, AnySessionIsFilteredToFiniteResultsOrRefused) {
   EXPECT_GT(refused, opened / 4);
 }
 
+TEST(Fuzz, SeedsThatOnceFailedPass) {
+  // Pixels of 1e-9 m: rounding took each point off its own plane, weights vanished, and 0/0 was
+  // left.
+  EXPECT_EQ(fuzz_session(5001473).problem, "");
+}
+
 }  // namespace
 }  // namespace holdfast::test
