@@ -18,7 +18,10 @@
   HOLDFAST_SCALAR static void name##_scalar(const Args& args) noexcept { name##_body(args); } \
   static void name##_portable(const Args& args) noexcept { name##_body(args); }
 
-#if defined(__x86_64__)
+#if defined(HOLDFAST_ONE_VARIANT)  // sanitized builds: one body stands for all instruction sets
+#define HOLDFAST_KERNEL(name, Args) \
+  void name(const Args& args) noexcept { name##_body(args); }
+#elif defined(__x86_64__)
 #define HOLDFAST_KERNEL(name, Args)                                                            \
   HOLDFAST_PLAIN_KERNEL(name, Args)                                                            \
   __attribute__((target("arch=x86-64-v2"))) static void name##_v2(const Args& args) noexcept { \
