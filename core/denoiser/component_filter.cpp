@@ -274,8 +274,8 @@ void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out
                 s.filter, now.data, out);
   } else {
     adaptive_filter(input.frames.now, signal,
-                    channels_ == 1 ? recipe_.visibility_filter : recipe_.radiance_filter, s.filter,
-                    out);
+                    channels_ == 1 ? recipe_.visibility_filter : recipe_.radiance_filter,
+                    s.window.weights, s.filter, out);
   }
   if (cones_) keep_positive(out);
 }

@@ -124,6 +124,7 @@ class Denoiser::Impl {
     guides.advance(has_past);
     load_guides(frame, report);
     guides.keep();
+    scratch.window.weights.clear();
     timer.end("guides", guides_traffic(plan.history_format == HistoryFormat::kPacked));
     rest.begin_frame(frame, guides.now(), guides.previous(), scene, has_past);
     follow_surfaces(frame, timer);

@@ -57,6 +57,7 @@ void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const Plan
   scene_.follow_halved(scene);
   take_guides(full, grid_, guides_.advance(has_past));
   guides_.keep();
+  scratch_.window.weights.clear();
   if (!has_past) return;
   const Plane* motion = halved(PlaneKind::kMotion, planes);
   if (motion != nullptr) halve_vectors();

@@ -43,6 +43,7 @@ void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = kMaxFilterChannels;
+  pass.kept = &window.weights;
   pass.spread_in = window.all_ones();
   pass.spread_out = window.spread[0];
   for (int first = 0; first < room.kept.count(); first += kMaxFilterChannels) {

@@ -39,9 +39,10 @@ class Zones {
 
 /// Narrows the footprint by a local mean of the samples: precision times samples^(1/4).
 void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& zones,
-                      FilterScratch& s) {
+                      TapWeights& weights, FilterScratch& s) {
   FilterRow pass;
   pass.guides = &guides;
+  pass.kept = &weights;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.step = 2;
   pass.channels = 1;
@@ -64,7 +65,7 @@ void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& z
 
 /// Fills guide[0] with a local mean of the luminance and guide[1] with its inverse tolerance.
 void prepare_luminance(const Guides& guides, const Signal& signal, float luminance_sigma,
-                       const Zones& zones, FilterScratch& s) {
+                       const Zones& zones, TapWeights& weights, FilterScratch& s) {
   const int width = guides.view.width, height = guides.view.height;
   const Channels<float>& values = *signal.values;
   ChannelView<const float> luminance = values[0];
@@ -81,6 +82,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
+  pass.kept = &weights;
   pass.channels = 1;
   pass.activity = &s.activity;
   pass.spread = Spread::kSamples;
@@ -108,7 +110,8 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 }  // namespace
 
 void adaptive_filter(const Guides& guides, const Signal& signal,
-                     const AdaptiveFilterSettings& settings, FilterScratch& s, Plane& out) {
+                     const AdaptiveFilterSettings& settings, TapWeights& weights, FilterScratch& s,
+                     Plane& out) {
   assert(settings.levels >= 1 && settings.levels <= kMostLevels);
   ChannelView<const float> values[3];
   for (int c = 0; c < signal.channels; ++c) values[c] = (*signal.values)[c];
@@ -116,8 +119,8 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
   const Zones zones(settings.levels, settings.radius);
   s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, zones.halos(),
                      kRestTolerance);
-  prepare_luminance(guides, signal, settings.luminance_sigma, zones, s);
-  if (signal.footprint != nullptr) narrow_footprint(guides, signal, zones, s);
+  prepare_luminance(guides, signal, settings.luminance_sigma, zones, weights, s);
+  if (signal.footprint != nullptr) narrow_footprint(guides, signal, zones, weights, s);
 
   FilterRow pass;
   pass.guides = &guides;

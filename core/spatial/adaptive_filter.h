@@ -2,6 +2,7 @@
 
 #include "core/spatial/guided_filter.h"
 #include "core/spatial/signal.h"
+#include "core/spatial/tap_weights.h"
 
 namespace holdfast {
 
@@ -20,9 +21,10 @@ struct AdaptiveFilterSettings {
 /// prefiltered luminance, and, for a visibility, outside the penumbra's footprint (axis-aligned
 /// filtering of soft shadows, Mehta et al. 2012). The footprint narrows with samples^-1/8 per axis,
 /// since what has less noise needs less blur.
-///   reads guides, signal | writes `out` (1 or 3 channels) | halo
+///   reads guides, signal | writes `out` (1 or 3 channels), `weights` of the guides | halo
 /// radius (2^levels - 1) + 3 px
 void adaptive_filter(const Guides& guides, const Signal& signal,
-                     const AdaptiveFilterSettings& settings, FilterScratch& scratch, Plane& out);
+                     const AdaptiveFilterSettings& settings, TapWeights& weights,
+                     FilterScratch& scratch, Plane& out);
 
 }  // namespace holdfast

@@ -24,17 +24,67 @@ struct TapRow {
   float normal_power;
 };
 
-template <int C, bool kLuminance>
+/// What a tap of a pass reads: geometry where its weights are found, luminance where that stops it.
+struct TapReads {
+  bool geometry, luminance;
+};
+
+/// Copies of the rows of a block whose taps reach beyond the image, with zeros there, which weigh
+/// nothing.
+template <int kReach>
+struct PaddedRows {
+  static constexpr int kGroup = 16;  ///< values that are copied at once
+  static constexpr int kRoom = kReach + kGroup;
+  static constexpr int kRows = 6 + kMaxFilterChannels;
+  alignas(64) float values[kRows][kRoom + kFilterBlock + kRoom];
+};
+
+/// A row around the block from x0 on, so that it can be read from -reach to count + reach - 1.
+template <int kReach>
+HOLDFAST_INLINE const float* pad_row(const float* row, int width, int x0, int count, int reach,
+                                     float (&to)[2 * PaddedRows<kReach>::kRoom + kFilterBlock]) {
+  constexpr int kGroup = PaddedRows<kReach>::kGroup;
+  float* const out = to + PaddedRows<kReach>::kRoom;  // the place of x0
+  const int before = (reach + kGroup - 1) / kGroup * kGroup;
+  const int after = (count + reach + kGroup - 1) / kGroup * kGroup;
+  for (int i = -before; i < after; ++i) out[i] = 0.0f;
+  const int first = max_of(-x0, -before), last = min_of(width - x0, after);
+  for (int i = first; i < last; ++i) out[i] = row[x0 + i];
+  return out;
+}
+
+/// The row qy at column x0.
+template <int C, TapReads kReads>
 HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
   TapRow t{};
-  t.depth = a.guides->depth().row(qy) + x0;
-  t.nx = a.guides->normal(0).row(qy) + x0;
-  t.ny = a.guides->normal(1).row(qy) + x0;
-  t.nz = a.guides->normal(2).row(qy) + x0;
-  if constexpr (kLuminance) t.luminance = a.luminance.row(qy) + x0;
+  if constexpr (kReads.geometry) {
+    t.depth = a.guides->depth().row(qy) + x0;
+    t.nx = a.guides->normal(0).row(qy) + x0;
+    t.ny = a.guides->normal(1).row(qy) + x0;
+    t.nz = a.guides->normal(2).row(qy) + x0;
+    t.normal_power = a.weights.normal_power;
+  }
+  if constexpr (kReads.luminance) t.luminance = a.luminance.row(qy) + x0;
   t.spread = a.spread_in.row(qy) + x0;
   for (int c = 0; c < C; ++c) t.in[c] = a.in[c].row(qy) + x0;
-  t.normal_power = a.weights.normal_power;
+  return t;
+}
+
+/// The same as copies in `padded`, for a block of `count` pixels.
+template <int C, TapReads kReads, int kReach>
+HOLDFAST_INLINE TapRow padded_tap_row(const FilterRow& a, int x0, int count, int qy,
+                                      PaddedRows<kReach>& padded) {
+  const int width = a.guides->view.width, reach = a.weights.radius * a.step;
+  TapRow t = tap_row<C, kReads>(a, 0, qy);
+  auto* room = padded.values;
+  if constexpr (kReads.geometry)
+    for (const float** row : {&t.depth, &t.nx, &t.ny, &t.nz})
+      *row = pad_row<kReach>(*row, width, x0, count, reach, *room++);
+  if constexpr (kReads.luminance)
+    t.luminance = pad_row<kReach>(t.luminance, width, x0, count, reach, *room++);
+  t.spread = pad_row<kReach>(t.spread, width, x0, count, reach, *room++);
+  for (int c = 0; c < C; ++c)
+    t.in[c] = pad_row<kReach>(t.in[c], width, x0, count, reach, *room++);
   return t;
 }
 

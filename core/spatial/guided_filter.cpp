@@ -5,7 +5,7 @@
 
 #include "core/kernels/parallel.h"
 #include "core/kernels/variants.h"
-#include "core/spatial/filter_taps.h"
+#include "core/spatial/kept_taps.h"
 
 namespace holdfast {
 namespace {
@@ -14,10 +14,19 @@ namespace {
 // own point off its plane, as under pixels of 1e-9 m some metres away: it then stays as it is.
 constexpr float kLeastWeight = 1e-15f;
 
+constexpr int kGreatestReach = 2 * kGreatestStep;  // of taps, pixels
+
 /// A row, and the logarithms of its kernel's weights at distance 0, 1 and 2.
 struct RowPass {
   const FilterRow& row;
   float log2_kernel[3];
+};
+
+/// What the weights of a pass are made of.
+enum class Weights {
+  kKept,       ///< geometry, as kept for the frame
+  kGeometry,   ///< geometry, found here
+  kLuminance,  ///< likewise, and luminance
 };
 
 struct RowBits {
@@ -31,11 +40,11 @@ HOLDFAST_INLINE RowBits row_bits(const RowPass& pass, int ky) {
            weight_bits(hy + pass.log2_kernel[2])}};
 }
 
-/// All taps of one row, for a block whose taps are all inside the image.
+/// All taps of one row.
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint, int kRadius>
-HOLDFAST_INLINE void add_taps(const RowPass& pass, int x0, int count, int ky, FilterBlock& b) {
+HOLDFAST_INLINE void add_taps(const RowPass& pass, const TapRow& t, int count, int ky,
+                              FilterBlock& b) {
   const int step = pass.row.step;
-  const TapRow t = tap_row<C, kLuminance>(pass.row, x0, pass.row.y + ky * step);
   const RowBits bits = row_bits(pass, ky);
   const float dy = static_cast<float>(ky * step);
 #pragma GCC ivdep
@@ -47,33 +56,17 @@ HOLDFAST_INLINE void add_taps(const RowPass& pass, int x0, int count, int ky, Fi
   }
 }
 
-/// The taps of one row that are inside the image, one after the other.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void add_taps_inside(const RowPass& pass, int x0, int count, int ky,
-                                     FilterBlock& b) {
-  const FilterRow& a = pass.row;
-  const TapRow t = tap_row<C, kLuminance>(a, x0, a.y + ky * a.step);
-  const float dy = static_cast<float>(ky * a.step);
-  for (int kx = -a.weights.radius; kx <= a.weights.radius; ++kx) {
-    const int dx = kx * a.step;
-    const int first = max_of(0, -(x0 + dx));
-    const int last = min_of(count, a.guides->view.width - dx - x0);
-    const float h = weight_bits(pass.log2_kernel[abs_of(kx)] + pass.log2_kernel[abs_of(ky)]);
-#pragma GCC ivdep
-    for (int i = first; i < last; ++i) {
-      const FilterPixel p = load_pixel<kLuminance, kFootprint>(b, i, dy);
-      FilterSums<C> s = load_sums<C>(b, i);
-      add_tap<C, kLuminance, kSpread, kFootprint>(
-          t, i + dx, place_of<kFootprint>(p, static_cast<float>(dx)), h, p, s);
-      store_sums<C>(s, b, i);
-    }
-  }
+/// Whether all taps of a block lie in columns of the image.
+HOLDFAST_INLINE bool is_inside(const FilterRow& a, int x0, int count) {
+  const int reach = a.weights.radius * a.step;
+  return x0 >= reach && x0 + count + reach <= a.guides->view.width;
 }
 
+/// The sums of a block whose weights are found here.
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, FilterBlock& b) {
+HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
-  const int width = a.guides->view.width, height = a.guides->view.height;
+  constexpr TapReads kReads{true, kLuminance};
   load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(a.step), x0, a.y,
                       count, b);
   for (float* normal : {b.nx, b.ny, b.nz})
@@ -86,26 +79,40 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     b.luminance = a.luminance.row(a.y) + x0;
     b.inverse_sigma = a.inverse_luminance_sigma.row(a.y) + x0;
   }
+  const bool inside = is_inside(a, x0, count);
+  PaddedRows<kGreatestReach> padded;
+  for (int ky = -a.weights.radius; ky <= a.weights.radius; ++ky) {
+    const int qy = a.y + ky * a.step;
+    if (qy < 0 || qy >= a.guides->view.height) continue;
+    const TapRow t = inside ? tap_row<C, kReads>(a, x0, qy)
+                            : padded_tap_row<C, kReads>(a, x0, count, qy, padded);
+    if (a.weights.radius == 2)
+      add_taps<C, kLuminance, kSpread, kFootprint, 2>(pass, t, count, ky, b);
+    else
+      add_taps<C, kLuminance, kSpread, kFootprint, 1>(pass, t, count, ky, b);
+  }
+}
+
+/// The sums of a block whose weights are kept.
+template <int C, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBlock& b) {
+  PaddedKeptRows padded;
+  const KeptRows rows = kept_rows<C>(a, x0, count, is_inside(a, x0, count) ? nullptr : &padded);
+  add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
+}
+
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, FilterBlock& b) {
+  const FilterRow& a = pass.row;
   if constexpr (kFootprint) {
     b.footprint_xx = a.footprint[0].row(a.y) + x0;
     b.footprint_xy = a.footprint[1].row(a.y) + x0;
     b.footprint_yy = a.footprint[2].row(a.y) + x0;
   }
-  // The radii that the pipeline uses, which are therefore those that are made fast.
-  const int reach = a.weights.radius * a.step;
-  const bool inside = x0 >= reach && x0 + count + reach <= width;
-  const bool wide = kLuminance && inside && a.weights.radius == 2;
-  const bool narrow = inside && a.weights.radius == 1;
-  for (int ky = -a.weights.radius; ky <= a.weights.radius; ++ky) {
-    if (a.y + ky * a.step < 0 || a.y + ky * a.step >= height) continue;
-    if (narrow) {
-      add_taps<C, kLuminance, kSpread, kFootprint, 1>(pass, x0, count, ky, b);
-      continue;
-    }
-    if constexpr (kLuminance)
-      if (wide) add_taps<C, kLuminance, kSpread, kFootprint, 2>(pass, x0, count, ky, b);
-    if (!wide) add_taps_inside<C, kLuminance, kSpread, kFootprint>(pass, x0, count, ky, b);
-  }
+  if constexpr (kWeights == Weights::kKept)
+    sum_up_kept<C, kSpread, kFootprint>(a, x0, count, b);
+  else
+    sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint>(pass, x0, count, b);
   const float* __restrict depth = a.guides->depth().row(a.y) + x0;
   for (int c = 0; c < C; ++c) {
     const float* __restrict in = a.in[c].row(a.y) + x0;
@@ -141,7 +148,7 @@ HOLDFAST_INLINE bool is_active(const FilterRow& a, int x) {
 }
 
 /// Where a block that begins at x0 must end at the latest: at its size, and where taps come to be
-/// all inside the image, or no longer are, so that few pixels are filtered tap by tap.
+/// all inside the image, or no longer are, so that few rows are copied.
 HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
   constexpr int kTile = ActivityMap::kTileWidth;
   const int width = a.guides->view.width, reach = a.weights.radius * a.step;
@@ -152,7 +159,7 @@ HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
 }
 
 /// The row in blocks: as many neighbouring tiles as fit and are all active, or all at rest.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
   const FilterRow& a = pass.row;
   constexpr int kTile = ActivityMap::kTileWidth;
@@ -164,7 +171,7 @@ HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
     int end = min_of(x0 + kTile, limit);
     while (end < limit && is_active(a, end) == active) end = min_of(end + kTile, limit);
     if (active)
-      filter_block<C, kLuminance, kSpread, kFootprint>(pass, x0, end - x0, block);
+      filter_block<C, kWeights, kSpread, kFootprint>(pass, x0, end - x0, block);
     else
       copy_block<C>(a, x0, end - x0);
     x0 = end;
@@ -173,49 +180,62 @@ HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
 
 // The combinations that the pipeline uses.
 HOLDFAST_INLINE void mean1_body(const RowPass& a) {
-  filter_row_body<1, false, Spread::kVariance, false>(a);
+  filter_row_body<1, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void mean2_body(const RowPass& a) {
-  filter_row_body<2, false, Spread::kVariance, false>(a);
+  filter_row_body<2, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void footprint_mean2_body(const RowPass& a) {
-  filter_row_body<2, false, Spread::kVariance, true>(a);
+  filter_row_body<2, Weights::kKept, Spread::kVariance, true>(a);
 }
 HOLDFAST_INLINE void mean3_body(const RowPass& a) {
-  filter_row_body<3, false, Spread::kVariance, false>(a);
+  filter_row_body<3, Weights::kGeometry, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void mean4_body(const RowPass& a) {
-  filter_row_body<4, false, Spread::kVariance, false>(a);
+  filter_row_body<4, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void footprint_mean4_body(const RowPass& a) {
-  filter_row_body<4, false, Spread::kVariance, true>(a);
+  filter_row_body<4, Weights::kKept, Spread::kVariance, true>(a);
 }
 HOLDFAST_INLINE void mean7_body(const RowPass& a) {
-  filter_row_body<7, false, Spread::kVariance, false>(a);
+  filter_row_body<7, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void weighted_mean1_body(const RowPass& a) {
-  filter_row_body<1, false, Spread::kSamples, false>(a);
+  filter_row_body<1, Weights::kKept, Spread::kSamples, false>(a);
 }
 HOLDFAST_INLINE void footprint_mean1_body(const RowPass& a) {
-  filter_row_body<1, false, Spread::kSamples, true>(a);
+  filter_row_body<1, Weights::kKept, Spread::kSamples, true>(a);
 }
 HOLDFAST_INLINE void variance_guided1_body(const RowPass& a) {
-  filter_row_body<1, true, Spread::kVariance, false>(a);
+  filter_row_body<1, Weights::kLuminance, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void sample_weighted1_body(const RowPass& a) {
-  filter_row_body<1, true, Spread::kSamples, false>(a);
+  filter_row_body<1, Weights::kLuminance, Spread::kSamples, false>(a);
 }
 HOLDFAST_INLINE void variance_guided3_body(const RowPass& a) {
-  filter_row_body<3, true, Spread::kVariance, false>(a);
+  filter_row_body<3, Weights::kLuminance, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void sample_weighted3_body(const RowPass& a) {
-  filter_row_body<3, true, Spread::kSamples, false>(a);
+  filter_row_body<3, Weights::kLuminance, Spread::kSamples, false>(a);
 }
 HOLDFAST_INLINE void footprint_weighted3_body(const RowPass& a) {
-  filter_row_body<3, true, Spread::kSamples, true>(a);
+  filter_row_body<3, Weights::kLuminance, Spread::kSamples, true>(a);
 }
 HOLDFAST_INLINE void footprint_weighted1_body(const RowPass& a) {
-  filter_row_body<1, true, Spread::kSamples, true>(a);
+  filter_row_body<1, Weights::kLuminance, Spread::kSamples, true>(a);
+}
+
+/// Has the weights of the tiles of a row that are active.
+void provide_weights(const FilterRow& a) noexcept {
+  constexpr int kTile = ActivityMap::kTileWidth;
+  assert(a.kept != nullptr && a.weights.radius == 1 && TapWeights::has(a.step));
+  const int width = a.guides->view.width;
+  for (int x = 0; x < width;) {
+    int end = x;
+    while (end < width && is_active(a, end)) end += kTile;
+    if (end > x) a.kept->provide(*a.guides, a.weights, a.step, x, a.y, min_of(end, width) - x);
+    x = end + kTile;
+  }
 }
 
 HOLDFAST_KERNEL(mean1, RowPass)
@@ -237,6 +257,7 @@ HOLDFAST_KERNEL(footprint_weighted3, RowPass)
 }  // namespace
 
 void filter_row(const FilterRow& row) noexcept {
+  if (!row.luminance && row.channels != 3) provide_weights(row);
   RowPass pass{row, {}};
   for (int k = 0; k <= row.weights.radius; ++k)
     pass.log2_kernel[k] = std::log2(row.weights.kernel[k]);

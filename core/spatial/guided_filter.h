@@ -10,7 +10,10 @@
 ///   state   none
 namespace holdfast {
 
+class TapWeights;
+
 inline constexpr int kMaxFilterChannels = 7;
+inline constexpr int kGreatestStep = 128;
 
 /// Weights of a pass. A tap q of pixel p counts
 ///   g(q) = h(q) exp(-(|plane distance| / (plane_sigma_px * step * footprint)
@@ -21,7 +24,7 @@ inline constexpr int kMaxFilterChannels = 7;
 /// is the width of a pixel at p's depth. exp(-k (1 - x)) stands for SVGF's x^k (they agree to first
 /// order at x = 1), so that all terms share one exponential.
 struct FilterWeights {
-  int radius = 2;                                              ///< 1: 3x3 taps, 2: 5x5 taps
+  int radius = 2;                                              ///< 1: 3x3 taps, 2: 5x5
   float kernel[3] = {3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  ///< 1-D weights by |offset|
   float plane_sigma_px = 1.0f;
   float normal_power = 128.0f;  ///< >= 88, so that taps without surface vanish; SVGF sec. 4.3
@@ -40,7 +43,7 @@ struct FilterRow {
   const Guides* guides = nullptr;
   FilterWeights weights;
   int y = 0;
-  int step = 1;
+  int step = 1;      ///< 1..kGreatestStep
   int channels = 0;  ///< 1..kMaxFilterChannels
   ChannelView<const float> in[kMaxFilterChannels];
   ChannelView<float> out[kMaxFilterChannels];
@@ -52,15 +55,19 @@ struct FilterRow {
   ChannelView<const float> inverse_luminance_sigma;
   /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
   ChannelView<const float> footprint[3];
+  /// Where the weights by geometry are kept from pass to pass. Without luminance, passes of 1, 2, 4
+  /// and 7 channels need it; others do not look at it.
+  TapWeights* kept = nullptr;
   /// Tiles at rest copy their inputs. Null: all tiles are active.
   const ActivityMap* activity = nullptr;
   int activity_zone = ActivityMap::kWidestZone;  ///< of `activity`, outside which tiles rest
 };
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
-/// uses: without luminance, 1 channel with kSamples or 2 or 4 with kVariance (with or without
-/// footprint), or 1, 3 or 7 channels with kVariance; with luminance, 1 or 3 channels with either
-/// spread, or with kSamples and footprint. Asserts that the combination is one of these.
+/// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4 with
+/// kVariance (with or without footprint), or of 1 or 7 channels with kVariance, or 3 channels at any
+/// step; with luminance, 1 or 3 channels with either spread, or with kSamples and footprint. Asserts
+/// that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
 
 /// Runs `pass` at row y.

@@ -8,7 +8,8 @@ namespace holdfast {
 WindowScratch::WindowScratch(int width, int height, Memory memory)
     : between(width, height, kMaxFilterChannels, memory),
       spread(width, height, 2, memory),
-      ones(width, 1, 1) {
+      ones(width, 1, 1),
+      weights(width, height, memory) {
   std::fill_n(ones[0].data, width, 1.0f);
 }
 
@@ -20,6 +21,7 @@ ChannelView<const float> window_means(const Guides& guides, const Channels<float
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = count;
+  pass.kept = &scratch.weights;
   pass.activity = activity;
   if (footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/spatial/guided_filter.h"
+#include "core/spatial/tap_weights.h"
 
 namespace holdfast {
 
@@ -9,12 +10,14 @@ struct WindowScratch {
   Channels<float> between;  ///< kMaxFilterChannels, after the first pass
   Channels<float> spread;   ///< 2: after the first pass, result
   Channels<float> ones;     ///< one row, its own
+  TapWeights weights;       ///< of the frame; to be cleared before each
 
   WindowScratch() = default;
   WindowScratch(int width, int height, Memory memory = Memory::kOwned);
   static void each_image(auto& s, auto&& visit) {
     visit(s.between);
     visit(s.spread);
+    TapWeights::each_image(s.weights, visit);
   }
   /// An image of ones: every row is the same one.
   ChannelView<const float> all_ones() const {

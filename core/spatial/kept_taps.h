@@ -1,0 +1,117 @@
+#pragma once
+
+#include "core/spatial/filter_taps.h"
+#include "core/spatial/tap_weights.h"
+
+/// The taps of guided_filter.cpp whose weights by geometry are kept: 3x3, without luminance.
+namespace holdfast {
+
+/// Weights of taps by the kernel, for weights that are kept as integers: in the pixel's row or
+/// column, and across corners.
+struct KeptKernel {
+  float beside, corner;
+};
+
+HOLDFAST_INLINE KeptKernel kept_kernel(const FilterWeights& weights) {
+  const float unit = weights.kernel[1] / TapWeights::kOne;
+  return {weights.kernel[0] * unit, weights.kernel[1] * unit};
+}
+
+HOLDFAST_INLINE float lower_weight(std::uint32_t word) {
+  return static_cast<float>(static_cast<std::int32_t>(word & 0xffffu));
+}
+
+HOLDFAST_INLINE float upper_weight(std::uint32_t word) {
+  return static_cast<float>(static_cast<std::int32_t>(word >> 16));
+}
+
+/// Adds the tap at row position `q`, of weight g.
+template <int C, Spread kSpread>
+HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>& s) {
+  const float w = kSpread == Spread::kSamples ? g * t.spread[q] : g;
+  s.weight += w;
+  s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
+  s.value[0] += w * t.in[0][q];
+  if constexpr (C > 1) s.value[1] += w * t.in[1][q];
+  if constexpr (C > 2) s.value[2] += w * t.in[2][q];
+  if constexpr (C > 3) s.value[3] += w * t.in[3][q];
+  if constexpr (C > 4) s.value[4] += w * t.in[4][q];
+  if constexpr (C > 5) s.value[5] += w * t.in[5][q];
+  if constexpr (C > 6) s.value[6] += w * t.in[6][q];
+}
+
+/// What a pixel's footprint leaves of opposite taps, which it weighs alike, times the kernel.
+struct PairWeights {
+  float beside, column, falling, rising;  ///< falling: from the upper left to the lower right
+};
+
+template <bool kFootprint>
+HOLDFAST_INLINE PairWeights pair_weights(const FilterBlock& b, int i, float step,
+                                         const KeptKernel& kernel) {
+  if constexpr (!kFootprint) {
+    return {kernel.beside, kernel.beside, kernel.corner, kernel.corner};
+  } else {
+    const float bits = weight_bits(0.0f), area = step * step;
+    const float xx = area * b.footprint_xx[i], yy = area * b.footprint_yy[i];
+    const float xy = 2.0f * area * b.footprint_xy[i];
+    return {kernel.beside * weight_exp(bits, xx), kernel.beside * weight_exp(bits, yy),
+            kernel.corner * weight_exp(bits, positive_part(xx + yy + xy)),
+            kernel.corner * weight_exp(bits, positive_part(xx + yy - xy))};
+  }
+}
+
+/// The rows that the taps of a block lie in.
+struct KeptRows {
+  TapRow above, own, below;
+};
+
+/// Copies of them.
+struct PaddedKeptRows {
+  PaddedRows<TapWeights::kSteps> above, own, below;
+};
+
+template <int C>
+HOLDFAST_INLINE KeptRows kept_rows(const FilterRow& a, int x0, int count, PaddedKeptRows* padded) {
+  constexpr TapReads kReads{false, false};
+  // In place of a row outside the image, where taps weigh nothing, the pixel's own.
+  const int above = a.y >= a.step ? a.y - a.step : a.y;
+  const int below = a.y + a.step < a.guides->view.height ? a.y + a.step : a.y;
+  if (padded == nullptr)
+    return {tap_row<C, kReads>(a, x0, above), tap_row<C, kReads>(a, x0, a.y),
+            tap_row<C, kReads>(a, x0, below)};
+  return {padded_tap_row<C, kReads>(a, x0, count, above, padded->above),
+          padded_tap_row<C, kReads>(a, x0, count, a.y, padded->own),
+          padded_tap_row<C, kReads>(a, x0, count, below, padded->below)};
+}
+
+/// The sums of all nine taps of a block.
+template <int C, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void add_kept_taps(const FilterRow& a, const KeptRows& rows, int x0, int count,
+                                   FilterBlock& b) {
+  const int step = a.step, y = a.y;
+  const std::uint32_t *of_above = a.kept->row(step, TapWeights::kAbove, y) + x0,
+                      *of_own = a.kept->row(step, TapWeights::kBeside, y) + x0,
+                      *of_below = a.kept->row(step, TapWeights::kBelow, y) + x0,
+                      *of_column = a.kept->row(step, TapWeights::kColumn, y) + x0;
+  const TapRow above = rows.above, own = rows.own, below = rows.below;
+  const KeptKernel kernel = kept_kernel(a.weights);
+  const float own_weight = a.weights.kernel[0] * a.weights.kernel[0];
+  const float distance = static_cast<float>(step);
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const PairWeights pair = pair_weights<kFootprint>(b, i, distance, kernel);
+    FilterSums<C> s{};
+    add_weighted<C, kSpread>(own, i, own_weight, s);
+    add_weighted<C, kSpread>(above, i - step, pair.falling * lower_weight(of_above[i]), s);
+    add_weighted<C, kSpread>(above, i, pair.column * lower_weight(of_column[i]), s);
+    add_weighted<C, kSpread>(above, i + step, pair.rising * upper_weight(of_above[i]), s);
+    add_weighted<C, kSpread>(own, i - step, pair.beside * lower_weight(of_own[i]), s);
+    add_weighted<C, kSpread>(own, i + step, pair.beside * upper_weight(of_own[i]), s);
+    add_weighted<C, kSpread>(below, i - step, pair.rising * lower_weight(of_below[i]), s);
+    add_weighted<C, kSpread>(below, i, pair.column * upper_weight(of_column[i]), s);
+    add_weighted<C, kSpread>(below, i + step, pair.falling * upper_weight(of_below[i]), s);
+    store_sums<C>(s, b, i);
+  }
+}
+
+}  // namespace holdfast
