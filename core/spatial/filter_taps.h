@@ -26,7 +26,7 @@ struct TapRow {
 
 /// What a tap of a pass reads: geometry where its weights are found, luminance where that stops it.
 struct TapReads {
-  bool geometry, luminance;
+  bool geometry, luminance, signals;
 };
 
 /// Copies of the rows of a block whose taps reach beyond the image, with zeros there, which weigh
@@ -65,7 +65,7 @@ HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
     t.normal_power = a.weights.normal_power;
   }
   if constexpr (kReads.luminance) t.luminance = a.luminance.row(qy) + x0;
-  t.spread = a.spread_in.row(qy) + x0;
+  if constexpr (kReads.signals) t.spread = a.spread_in.row(qy) + x0;
   for (int c = 0; c < C; ++c) t.in[c] = a.in[c].row(qy) + x0;
   return t;
 }
@@ -82,9 +82,9 @@ HOLDFAST_INLINE TapRow padded_tap_row(const FilterRow& a, int x0, int count, int
       *row = pad_row<kReach>(*row, width, x0, count, reach, *room++);
   if constexpr (kReads.luminance)
     t.luminance = pad_row<kReach>(t.luminance, width, x0, count, reach, *room++);
-  t.spread = pad_row<kReach>(t.spread, width, x0, count, reach, *room++);
-  for (int c = 0; c < C; ++c)
-    t.in[c] = pad_row<kReach>(t.in[c], width, x0, count, reach, *room++);
+  if constexpr (kReads.signals)
+    t.spread = pad_row<kReach>(t.spread, width, x0, count, reach, *room++);
+  for (int c = 0; c < C; ++c) t.in[c] = pad_row<kReach>(t.in[c], width, x0, count, reach, *room++);
   return t;
 }
 

@@ -66,7 +66,7 @@ HOLDFAST_INLINE bool is_inside(const FilterRow& a, int x0, int count) {
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
-  constexpr TapReads kReads{true, kLuminance};
+  constexpr TapReads kReads{true, kLuminance, true};
   load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(a.step), x0, a.y,
                       count, b);
   for (float* normal : {b.nx, b.ny, b.nz})
@@ -101,6 +101,35 @@ HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBl
   add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
 }
 
+/// What the sums come to; pixels without surface, or weights, stay as they are. `kExact`: by a
+/// division, so that what has no other tap stays as it is to the last bit.
+template <int C, Spread kSpread, bool kExact>
+HOLDFAST_INLINE void write_block(const FilterRow& a, int x0, int count, const FilterBlock& b) {
+  const float* __restrict depth = a.guides->depth().row(a.y) + x0;
+  float inverse[kFilterBlock];  // of the weight; 0: stays
+  for (int i = 0; i < count; ++i) {
+    const float enough = b.weight_sum[i] > kLeastWeight ? 1.0f / b.weight_sum[i] : 0.0f;
+    inverse[i] = depth[i] > 0.0f ? enough : 0.0f;
+  }
+  for (int c = 0; c < C; ++c) {
+    const float* __restrict in = a.in[c].row(a.y) + x0;
+    float* __restrict out = a.out[c].row(a.y) + x0;
+    for (int i = 0; i < count; ++i) {
+      const float mean = kExact ? b.sum[c][i] / b.weight_sum[i] : b.sum[c][i] * inverse[i];
+      out[i] = inverse[i] > 0.0f ? mean : in[i];
+    }
+  }
+  const float* __restrict in = a.spread_in.row(a.y) + x0;
+  float* __restrict out = a.spread_out.row(a.y) + x0;
+  for (int i = 0; i < count; ++i) {
+    const float variance = b.spread_sum[i] * inverse[i] * inverse[i];
+    const float value = kSpread == Spread::kSamples
+                            ? b.weight_sum[i] * b.weight_sum[i] / b.spread_sum[i]
+                            : variance;
+    out[i] = inverse[i] > 0.0f ? value : in[i];
+  }
+}
+
 template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
@@ -113,22 +142,7 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     sum_up_kept<C, kSpread, kFootprint>(a, x0, count, b);
   else
     sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint>(pass, x0, count, b);
-  const float* __restrict depth = a.guides->depth().row(a.y) + x0;
-  for (int c = 0; c < C; ++c) {
-    const float* __restrict in = a.in[c].row(a.y) + x0;
-    float* __restrict out = a.out[c].row(a.y) + x0;
-    for (int i = 0; i < count; ++i)
-      out[i] =
-          depth[i] > 0.0f && b.weight_sum[i] > kLeastWeight ? b.sum[c][i] / b.weight_sum[i] : in[i];
-  }
-  const float* __restrict in = a.spread_in.row(a.y) + x0;
-  float* __restrict out = a.spread_out.row(a.y) + x0;
-  for (int i = 0; i < count; ++i) {
-    const float squared = b.weight_sum[i] * b.weight_sum[i];
-    const float value =
-        kSpread == Spread::kSamples ? squared / b.spread_sum[i] : b.spread_sum[i] / squared;
-    out[i] = depth[i] > 0.0f && b.weight_sum[i] > kLeastWeight ? value : in[i];
-  }
+  write_block<C, kSpread, kWeights == Weights::kLuminance>(a, x0, count, b);
 }
 
 template <int C>

@@ -65,9 +65,9 @@ struct FilterRow {
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
 /// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4 with
-/// kVariance (with or without footprint), or of 1 or 7 channels with kVariance, or 3 channels at any
-/// step; with luminance, 1 or 3 channels with either spread, or with kSamples and footprint. Asserts
-/// that the combination is one of these.
+/// kVariance (with or without footprint), or of 1 or 7 channels with kVariance, or 3 channels at
+/// any step; with luminance, 1 or 3 channels with either spread, or with kSamples and footprint.
+/// Asserts that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
 
 /// Runs `pass` at row y.

@@ -72,7 +72,7 @@ struct PaddedKeptRows {
 
 template <int C>
 HOLDFAST_INLINE KeptRows kept_rows(const FilterRow& a, int x0, int count, PaddedKeptRows* padded) {
-  constexpr TapReads kReads{false, false};
+  constexpr TapReads kReads{false, false, true};
   // In place of a row outside the image, where taps weigh nothing, the pixel's own.
   const int above = a.y >= a.step ? a.y - a.step : a.y;
   const int below = a.y + a.step < a.guides->view.height ? a.y + a.step : a.y;

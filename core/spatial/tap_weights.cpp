@@ -3,67 +3,84 @@
 #include <algorithm>
 
 #include "core/kernels/variants.h"
+#include "core/spatial/filter_taps.h"
 #include "core/spatial/tangent_planes.h"
 
 namespace holdfast {
 namespace {
 
 constexpr int kTile = ActivityMap::kTileWidth;
-constexpr int kBlock = 64;  // pixels at a time
 
-/// Pixels of a row whose weights are to be found.
+/// Pixels of a row whose weights are to be found: `row` names their y, step, guides and weights.
 struct WeightBlock {
-  const Guides& guides;
-  const FilterWeights& weights;
-  int step, x0, y, count;  ///< 1..kBlock pixels
+  const FilterRow& row;
+  int x0, count;  ///< 1..kFilterBlock pixels
   std::uint32_t* out[TapWeights::kPairs];
 };
 
-/// The tangent planes of the block, and normals times their power.
-using Planes = TangentPlanes<kBlock>;
+/// The tap that lies (dx, dy) from the pixels of a block.
+struct GeometryTap {
+  const TapRow& row;
+  int dx, dy;
+};
 
-/// Weights of the taps (dx, dy) away, times kOne, into one half of the words, the other of which
-/// stays as it is: `shift` 0 or 16.
-HOLDFAST_INLINE void add_half(const WeightBlock& a, const Planes& b, int dx, int dy, int shift,
-                              std::uint32_t* __restrict words) {
-  const int qy = a.y + dy, width = a.guides.view.width;
-  if (qy < 0 || qy >= a.guides.view.height) return;
-  const int first = max_of(0, -(a.x0 + dx)), last = min_of(a.count, width - dx - a.x0);
-  const float *depth = a.guides.depth().row(qy) + a.x0 + dx,
-              *nx = a.guides.normal(0).row(qy) + a.x0 + dx,
-              *ny = a.guides.normal(1).row(qy) + a.x0 + dx,
-              *nz = a.guides.normal(2).row(qy) + a.x0 + dx;
-  const float fx = static_cast<float>(dx), fy = static_cast<float>(dy);
-  const float power = a.weights.normal_power, bits_of_one = weight_bits(0.0f);
-#pragma GCC ivdep
-  for (int i = first; i < last; ++i) {
-    const float plane = b.plane_0[i] + fy * b.plane_y[i] + fx * b.plane_x[i];
-    const float offset = b.offset_0[i] + fy * b.offset_y[i] + fx * b.offset_x[i];
-    const float turned = power - b.nx[i] * nx[i] - b.ny[i] * ny[i] - b.nz[i] * nz[i];
-    const float exponent = abs_of(depth[i] * plane + offset) + positive_part(turned);
-    const float weight = min_of(weight_exp(bits_of_one, exponent), 1.0f);
-    const auto kept = static_cast<std::int32_t>(weight * TapWeights::kOne + 0.5f);
-    words[i] |= static_cast<std::uint32_t>(kept) << shift;
-  }
+HOLDFAST_INLINE std::uint32_t kept_weight(const FilterBlock& b, const GeometryTap& tap, int i) {
+  const float dx = static_cast<float>(tap.dx), dy = static_cast<float>(tap.dy);
+  const int q = i + tap.dx;
+  const float plane = b.plane_0[i] + dy * b.plane_y[i] + dx * b.plane_x[i];
+  const float offset = b.offset_0[i] + dy * b.offset_y[i] + dx * b.offset_x[i];
+  const float turned = tap.row.normal_power - b.nx[i] * tap.row.nx[q] - b.ny[i] * tap.row.ny[q] -
+                       b.nz[i] * tap.row.nz[q];
+  const float exponent = abs_of(tap.row.depth[q] * plane + offset) + positive_part(turned);
+  // weight_exp may exceed 1 by its error, which the rounding takes away again.
+  const float weight = weight_exp(weight_bits(0.0f), exponent);
+  return static_cast<std::uint32_t>(static_cast<std::int32_t>(weight * TapWeights::kOne + 0.5f));
 }
 
-HOLDFAST_INLINE void find_weights_body(const WeightBlock& a) {
-  Planes planes;
-  load_tangent_planes(a.guides, a.weights.plane_sigma_px * static_cast<float>(a.step), a.x0, a.y,
-                      a.count, planes);
-  for (float* normal : {planes.nx, planes.ny, planes.nz})
-    for (int i = 0; i < a.count; ++i) normal[i] *= a.weights.normal_power;
-  for (int pair = 0; pair < TapWeights::kPairs; ++pair)
-    for (int i = 0; i < a.count; ++i) a.out[pair][i] = 0;
-  const int s = a.step;
-  add_half(a, planes, -s, -s, 0, a.out[TapWeights::kAbove]);
-  add_half(a, planes, s, -s, 16, a.out[TapWeights::kAbove]);
-  add_half(a, planes, -s, 0, 0, a.out[TapWeights::kBeside]);
-  add_half(a, planes, s, 0, 16, a.out[TapWeights::kBeside]);
-  add_half(a, planes, -s, s, 0, a.out[TapWeights::kBelow]);
-  add_half(a, planes, s, s, 16, a.out[TapWeights::kBelow]);
-  add_half(a, planes, 0, -s, 0, a.out[TapWeights::kColumn]);
-  add_half(a, planes, 0, s, 16, a.out[TapWeights::kColumn]);
+HOLDFAST_INLINE void find_pair(const FilterBlock& b, GeometryTap lower, GeometryTap upper,
+                               int count, std::uint32_t* out) {
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i)
+    out[i] = kept_weight(b, lower, i) | kept_weight(b, upper, i) << 16;
+}
+
+/// Where a row is outside the image: nothing has weight.
+HOLDFAST_INLINE TapRow row_without_surface(const FilterRow& a,
+                                           PaddedRows<TapWeights::kSteps>& padded) {
+  for (float& value : padded.values[0]) value = 0.0f;
+  TapRow t{};
+  t.depth = t.nx = t.ny = t.nz = padded.values[0] + PaddedRows<TapWeights::kSteps>::kRoom;
+  t.normal_power = a.weights.normal_power;
+  return t;
+}
+
+HOLDFAST_INLINE void find_weights_body(const WeightBlock& block) {
+  constexpr TapReads kReads{true, false, false};
+  const FilterRow& a = block.row;
+  const int step = a.step, height = a.guides->view.height, x0 = block.x0, count = block.count;
+  FilterBlock b;
+  load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(step), x0, a.y,
+                      count, b);
+  for (float* normal : {b.nx, b.ny, b.nz})
+    for (int i = 0; i < count; ++i) normal[i] *= a.weights.normal_power;
+  PaddedRows<TapWeights::kSteps> padded[3];
+  TapRow rows[3];
+  const bool inside = x0 >= step && x0 + count + step <= a.guides->view.width;
+  for (int k = 0; k < 3; ++k) {
+    const int qy = a.y + (k - 1) * step;
+    const bool exists = qy >= 0 && qy < height;
+    if (!exists)
+      rows[k] = row_without_surface(a, padded[k]);
+    else if (inside)
+      rows[k] = tap_row<0, kReads>(a, x0, qy);
+    else
+      rows[k] = padded_tap_row<0, kReads>(a, x0, count, qy, padded[k]);
+  }
+  const TapRow &above = rows[0], &own = rows[1], &below = rows[2];
+  find_pair(b, {above, -step, -step}, {above, step, -step}, count, block.out[TapWeights::kAbove]);
+  find_pair(b, {own, -step, 0}, {own, step, 0}, count, block.out[TapWeights::kBeside]);
+  find_pair(b, {below, -step, step}, {below, step, step}, count, block.out[TapWeights::kBelow]);
+  find_pair(b, {above, 0, -step}, {below, 0, step}, count, block.out[TapWeights::kColumn]);
 }
 
 HOLDFAST_KERNEL(find_weights, WeightBlock)
@@ -82,6 +99,11 @@ void TapWeights::provide(const Guides& guides, const FilterWeights& weights, int
                          int y, int count) {
   std::uint8_t* known = &known_[static_cast<std::size_t>((step - 1) * height_ + y) *
                                 static_cast<std::size_t>(tiles_)];
+  FilterRow pass;
+  pass.guides = &guides;
+  pass.weights = weights;
+  pass.step = step;
+  pass.y = y;
   const int end = x0 + count;
   for (int x = x0; x < end;) {
     if (known[x / kTile] != 0) {
@@ -89,12 +111,12 @@ void TapWeights::provide(const Guides& guides, const FilterWeights& weights, int
       continue;
     }
     int last = x;
-    while (last < end && last - x < kBlock && known[last / kTile] == 0) {
+    while (last < end && last - x < kFilterBlock && known[last / kTile] == 0) {
       known[last / kTile] = 1;
       last += kTile;
     }
     last = std::min(last, end);
-    WeightBlock block{guides, weights, step, x, y, last - x, {}};
+    WeightBlock block{pass, x, last - x, {}};
     for (int pair = 0; pair < kPairs; ++pair)
       block.out[pair] = words_[(step - 1) * kPairs + pair].row(y) + x;
     find_weights(block);

@@ -110,6 +110,7 @@ TEST(StageOracle, ConesAgreeOnEveryInstructionSet) {
             std::vector<ConeSamples> given;
             for (std::size_t j = 0; j < radiance.size(); ++j)
               given.push_back({&session.sent[t][j].directions, &radiance[j]});
+            window.weights.clear();
             cones.correct({session.guides[t], session.guides[t > 0 ? t - 1 : 0], scene},
                           t > 0 ? &session.surface[t] : nullptr, nullptr, given, ConeRule{}, 0,
                           room, window);
