@@ -9,7 +9,7 @@ namespace holdfast {
 
 /// Rows handed to a thread at a time: large enough to hide the cost of a task, small enough to
 /// balance two threads at 270 rows.
-inline constexpr int kRowsPerTask = 8;
+inline constexpr int kRowsPerTask = 4;
 
 /// Calls `body(i)` for i in first..end-1, at least `per_task` of them by one thread, in parallel in
 /// the caller's task arena. Calls are independent, so results do not depend on the number of
