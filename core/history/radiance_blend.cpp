@@ -46,9 +46,24 @@ struct RadianceBlend {
     Taps own[kTapBlock];
     for (int x = 0; x < noisy.width(); x += kTapBlock) {
       const int count = std::min(kTapBlock, noisy.width() - x);
-      for (int k = 0; k < candidates(); ++k)
-        read_candidate({taps_of(k, x, y, count, own), k, x, y, count, noisy, before, s});
+      for (int k = 0; k < candidates(); ++k) {
+        const Taps* taps = taps_of(k, x, y, count, own);
+        if (k == 0 || any(taps, count))
+          read_candidate({taps, k, x, y, count, noisy, before, s});
+        else
+          leave_out(k, x, y, count);
+      }
     }
+  }
+
+  static bool any(const Taps* taps, int count) {
+    return std::any_of(taps, taps + count, [](const Taps& each) { return each.any(); });
+  }
+
+  /// A candidate that no pixel of the block has: its values will not be looked at.
+  void leave_out(int k, int x, int y, int count) const {
+    std::fill_n(s.candidates[kStep * k + kSamples].row(y) + x, count, 0.0f);
+    for (int c = 0; c < kStep; ++c) std::fill_n(s.differences[k][c].row(y) + x, count, 0.0f);
   }
 
   /// Marks the tiles in which a candidate differs from the frame: most of an image has no
@@ -77,7 +92,7 @@ struct RadianceBlend {
       const Taps* first = taps_of(0, x, y, count, own);
       const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
       blend_candidates({{first, second},
-                        candidates(),
+                        second != nullptr && any(second, count) ? 2 : 1,
                         x,
                         y,
                         count,
