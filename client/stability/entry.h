@@ -35,15 +35,27 @@ struct Entry {
   enum class Cost { kSmall, kLong, kLarge } cost = Cost::kSmall;
 };
 
+/// How the sessions of a row keep what they remember. Rows of packed histories have names of their
+/// own, and limits: packed ones are rounded at random, by another draw where any bit differs.
+struct Histories {
+  std::string format = "f32";  ///< or f16
+
+  bool packed() const { return format != "f32"; }
+  std::string name(const std::string& row) const { return packed() ? format + "-" + row : row; }
+  Limits limit(Limits floats, Limits packs) const { return packed() ? packs : floats; }
+};
+
 /// Rows by what is extreme in them.
-std::vector<Entry> scale_entries();
-std::vector<Entry> radiance_entries();
+std::vector<Entry> scale_entries(const Histories& histories = {});
+std::vector<Entry> radiance_entries(const Histories& histories = {});
 std::vector<Entry> surface_entries();
 std::vector<Entry> light_entries();
 std::vector<Entry> camera_entries();
 std::vector<Entry> object_entries();
 std::vector<Entry> size_entries();
 std::vector<Entry> time_entries();
-std::vector<Entry> long_entries();
+std::vector<Entry> long_entries(const Histories& histories = {});
+/// Of packed histories: all rows that can be said of them, and some of their own.
+std::vector<Entry> packed_entries();
 
 }  // namespace holdfast::stability

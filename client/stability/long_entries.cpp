@@ -40,17 +40,18 @@ void add(const PlaneSet& results, const PlaneSet& truth, Sums& sums) {
         }
 }
 
-World small_world(const std::string& recipe) {
+World small_world(const std::string& recipe, const Histories& histories) {
   World world;
   world.recipe = recipe;
+  world.history = histories.format;
   world.width = 9;
   world.height = 7;
   return world;
 }
 
 /// Camera, box and light go round and round.
-World moving_world(const std::string& recipe) {
-  World world = small_world(recipe);
+World moving_world(const std::string& recipe, const Histories& histories) {
+  World world = small_world(recipe, histories);
   const auto turn = [](int t) { return 2 * std::numbers::pi * (t % kPeriod) / kPeriod; };
   world.camera = [=](int t) {
     return glm::translate(glm::dmat4(1), {0.2 * std::sin(turn(t)), 0.1 * std::cos(turn(t)), 0});
@@ -101,13 +102,13 @@ Run run(const World& world, int frames) {
   return out;
 }
 
-Entry at_rest(const char* name, int frames, Entry::Cost cost) {
-  return {name,
+Entry at_rest(const char* name, int frames, Entry::Cost cost, const Histories& histories) {
+  return {histories.name(name),
           std::to_string(frames) + " frames of a scene at rest",
           "no drift: the error at the end over that after 256 frames",
           1.2,
           [=](const std::string& recipe) {
-            World world = small_world(recipe);
+            World world = small_world(recipe, histories);
             world.still = true;
             return run(world, frames).drift();
           },
@@ -115,15 +116,15 @@ Entry at_rest(const char* name, int frames, Entry::Cost cost) {
 }
 
 /// One session tells of all three: the largest of them, each over its limit.
-Entry moving(const char* name, int frames, Entry::Cost cost) {
+Entry moving(const char* name, int frames, Entry::Cost cost, const Histories& histories) {
   constexpr double kDrift = 1.2, kEnergy = 0.05, kGrowth = 1 << 17;
-  return {name,
+  return {histories.name(name),
           std::to_string(frames) + " frames in which all moves",
           "error at most 1.2 times that after 256 frames, energy the same to 5 %, heap to 128 KiB: "
           "the largest of them, over its bound",
           1,
           [=](const std::string& recipe) {
-            const Run of = run(moving_world(recipe), frames);
+            const Run of = run(moving_world(recipe, histories), frames);
             return std::max({of.drift() / kDrift, of.energy() / kEnergy, of.growth / kGrowth});
           },
           cost};
@@ -161,23 +162,31 @@ double blended(float alpha, int frames, const std::function<double(double, doubl
   return worst;
 }
 
+/// The mean itself, which no history keeps.
+std::vector<Entry> mean_entries() {
+  return {{"alpha-0", "an exponential mean of least weight 0, over 4096 frames",
+           "the plain mean of all samples of 0..1: the largest difference", 2e-5,
+           [](const std::string&) {
+             return blended(0, 4096, [](double mean, double) { return mean; });
+           }},
+          {"alpha-1", "an exponential mean of least weight 1, over 64 frames",
+           "the last frame, to the last bit", 0, [](const std::string&) {
+             return blended(1, 64, [](double, double last) { return last; });
+           }}};
+}
+
 }  // namespace
 
 // History that drifts, or that gives up what it knows, would make the error grow.
-std::vector<Entry> long_entries() {
-  return {
-      at_rest("long-run", 2000, Entry::Cost::kSmall),
-      at_rest("very-long-run", 100000, Entry::Cost::kLong),
-      {"alpha-0", "an exponential mean of least weight 0, over 4096 frames",
-       "the plain mean of all samples of 0..1: the largest difference", 2e-5,
-       [](const std::string&) {
-         return blended(0, 4096, [](double mean, double) { return mean; });
-       }},
-      {"alpha-1", "an exponential mean of least weight 1, over 64 frames",
-       "the last frame, to the last bit", 0,
-       [](const std::string&) { return blended(1, 64, [](double, double last) { return last; }); }},
-      moving("moving-run", 1024, Entry::Cost::kSmall),
-      moving("long-moving-run", 10016, Entry::Cost::kLong)};
+std::vector<Entry> long_entries(const Histories& histories) {
+  using Cost = Entry::Cost;
+  std::vector<Entry> entries{at_rest("long-run", 2000, Cost::kSmall, histories),
+                             at_rest("very-long-run", 100000, Cost::kLong, histories)};
+  if (!histories.packed())
+    for (Entry& entry : mean_entries()) entries.push_back(std::move(entry));
+  entries.push_back(moving("moving-run", 1024, Cost::kSmall, histories));
+  entries.push_back(moving("long-moving-run", 10016, Cost::kLong, histories));
+  return entries;
 }
 
 }  // namespace holdfast::stability

@@ -15,21 +15,21 @@ constexpr PlaneId kGlossyPlane{PlaneKind::kGlossy, {}}, kIndirectPlane{PlaneKind
 constexpr int kPoisonedFrom = 2, kPoisonedTo = 5;  ///< frames; the last is clean again
 constexpr int kRecovered = 69;                     ///< frames of a session that recovers
 
-World still_world(const std::string& recipe) {
+World still_world(const std::string& recipe, const Histories& histories) {
   World world;
   world.recipe = recipe;
+  world.history = histories.format;
   world.still = true;
   return world;
 }
 
-Entry brightness(const char* text, double radiance) {
-  return {"radiance-" + std::string(text),
-          "all light times " + std::string(text),
-          "as with ordinary light, times " + std::string(text),
-          {1e-4, 1e-3},
+Entry brightness(const char* text, double radiance, const Histories& histories) {
+  return {histories.name("radiance-" + std::string(text)), "all light times " + std::string(text),
+          "as with ordinary light, times " + std::string(text), histories.limit({1e-4, 1e-3}, 0.02),
           [=](const std::string& recipe) {
             World world;
             world.recipe = recipe;
+            world.history = histories.format;
             const Outcome ordinary = filter_world(world);
             world.radiance = radiance;
             return relative_difference(filter_world(world), ordinary, radiance);
@@ -45,8 +45,8 @@ void poison(Plane& plane, float bad) {
 
 /// Poison for three frames against none: finite, counted by name while it lasts and only then, and
 /// gone afterwards.
-double poison_left(const std::string& recipe, PlaneId id, float bad) {
-  World world = still_world(recipe);
+double poison_left(const std::string& recipe, const Histories& histories, PlaneId id, float bad) {
+  World world = still_world(recipe, histories);
   const Outcome clean = filter_world(world, kRecovered);
   world.spoil = [=](Frame& frame, int t) {
     if (t >= kPoisonedFrom && t < kPoisonedTo) poison(*frame.planes.find(id), bad);
@@ -62,23 +62,24 @@ double poison_left(const std::string& recipe, PlaneId id, float bad) {
          rmse(clean.results.back().at(id), mean.at(id));
 }
 
-Entry poisoned(const std::string& text, float bad) {
+Entry poisoned(const std::string& text, float bad, const Histories& histories) {
   return {
-      "radiance-" + text, "a seventh of glossy, indirect and visibility " + text + " for 3 frames",
+      histories.name("radiance-" + text),
+      "a seventh of glossy, indirect and visibility " + text + " for 3 frames",
       "finite; counted by plane while it lasts; gone 64 frames later: error against the truth over "
       "that of a session without it",
       1.1, [=](const std::string& recipe) {
         double worst = 0;
         for (const PlaneId id :
              {kGlossyPlane, kIndirectPlane, PlaneId::of_light(PlaneKind::kVisibility, 0)})
-          worst = std::max(worst, poison_left(recipe, id, bad));
+          worst = std::max(worst, poison_left(recipe, histories, id, bad));
         return worst;
       }};
 }
 
 /// A single value of a million in one frame: how much brighter any pixel is afterwards.
-double firefly_left(const std::string& recipe) {
-  World world = still_world(recipe);
+double firefly_left(const std::string& recipe, const Histories& histories) {
+  World world = still_world(recipe, histories);
   const Outcome clean = filter_world(world, kRecovered);
   world.spoil = [](Frame& frame, int t) {
     for (int c = 0; c < 3 && t == 4; ++c)
@@ -100,8 +101,8 @@ double firefly_left(const std::string& recipe) {
 }
 
 /// Light above the largest that the core takes: its largest, and counted.
-double over_the_top(const std::string& recipe) {
-  World world = still_world(recipe);
+double over_the_top(const std::string& recipe, const Histories& histories) {
+  World world = still_world(recipe, histories);
   world.radiance = 1e30;
   world.light.radiance = glm::dvec3(0);  // the session itself takes no light of this radiance
   const Outcome outcome = filter_world(world);
@@ -117,8 +118,8 @@ double over_the_top(const std::string& recipe) {
 }
 
 /// Light far below what a float holds in full precision.
-double denormal_light(const std::string& recipe) {
-  World world = still_world(recipe);
+double denormal_light(const std::string& recipe, const Histories& histories) {
+  World world = still_world(recipe, histories);
   world.radiance = 1e-40;
   const Outcome outcome = filter_world(world);
   if (!all_finite(outcome)) return HUGE_VAL;
@@ -136,22 +137,27 @@ double denormal_light(const std::string& recipe) {
 
 }  // namespace
 
-std::vector<Entry> radiance_entries() {
-  std::vector<Entry> entries{brightness("1e-8", 1e-8), brightness("1e-4", 1e-4),
-                             brightness("1e4", 1e4),   brightness("7e4", 7e4),
-                             brightness("1e8", 1e8),   brightness("1e12", 1e12)};
+std::vector<Entry> radiance_entries(const Histories& histories) {
+  const auto by = [&](double (*error)(const std::string&, const Histories&)) {
+    return [=](const std::string& recipe) { return error(recipe, histories); };
+  };
+  std::vector<Entry> entries{
+      brightness("1e-8", 1e-8, histories), brightness("1e-4", 1e-4, histories),
+      brightness("1e4", 1e4, histories),   brightness("7e4", 7e4, histories),
+      brightness("1e8", 1e8, histories),   brightness("1e12", 1e12, histories)};
   entries[3].input += ", beyond the half floats of the wire";
-  entries.push_back({"radiance-1e30", "glossy and indirect of 1e30",
-                     "the largest radiance, 1e15, relative to it; counted", 1e-4, over_the_top});
-  entries.push_back({"radiance-denormal", "all light 1e-40",
-                     "no more than was sent, never negative", 1e-39, denormal_light});
-  entries.push_back(poisoned("nan", kNaN));
-  entries.push_back(poisoned("inf", kInf));
-  entries.push_back(poisoned("-inf", -kInf));
-  entries.push_back(poisoned("negative", -2.0f));
-  entries.push_back({"radiance-firefly", "one sample of 1e6 in one frame",
+  entries.push_back({histories.name("radiance-1e30"), "glossy and indirect of 1e30",
+                     "the largest radiance, 1e15, relative to it; counted",
+                     histories.limit(1e-4, 1e-3), by(over_the_top)});
+  entries.push_back({histories.name("radiance-denormal"), "all light 1e-40",
+                     "no more than was sent, never negative", 1e-39, by(denormal_light)});
+  entries.push_back(poisoned("nan", kNaN, histories));
+  entries.push_back(poisoned("inf", kInf, histories));
+  entries.push_back(poisoned("-inf", -kInf, histories));
+  entries.push_back(poisoned("negative", -2.0f, histories));
+  entries.push_back({histories.name("radiance-firefly"), "one sample of 1e6 in one frame",
                      "never brighter than itself; gone 64 frames later, relative to it", 0.02,
-                     firefly_left});
+                     by(firefly_left)});
   return entries;
 }
 

@@ -21,7 +21,7 @@ std::vector<Entry> all_entries() {
   std::vector<Entry> all;
   for (const auto& group :
        {scale_entries(), radiance_entries(), surface_entries(), light_entries(), camera_entries(),
-        object_entries(), size_entries(), time_entries(), long_entries()})
+        object_entries(), size_entries(), time_entries(), long_entries(), packed_entries()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

@@ -150,7 +150,7 @@ DenoiserConfig session_of(const World& world) {
   config.width = world.width;
   config.height = world.height;
   config.recipe = world.recipe;
-  config.history = "f32";  // packed ones round at random: another draw where any bit differs
+  config.history = world.history;
   config.lights = {world.light};
   config.lights.insert(config.lights.end(), world.more_lights.begin(), world.more_lights.end());
   for (Light& light : config.lights) {

@@ -18,9 +18,10 @@ inline constexpr std::uint32_t kFloorId = 1, kWallId = 2, kBoxId = 3;
 struct World {
   int width = 33, height = 17;
   std::string recipe = "reliable";
-  double metres = 1;             ///< of one unit
-  glm::dmat4 place{1.0};         ///< world from scene; rigid
-  double fov = 0.9;              ///< vertical, radians
+  std::string history = "f32";  ///< packed ones round at random: another draw where any bit differs
+  double metres = 1;            ///< of one unit
+  glm::dmat4 place{1.0};        ///< world from scene; rigid
+  double fov = 0.9;             ///< vertical, radians
   double near = 0.1, far = 100;  ///< units; any order
   double radiance = 1;           ///< multiplies all light
   float roughness = 0.3f;

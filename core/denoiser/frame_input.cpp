@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 
 #include "core/kernels/parallel.h"
@@ -23,7 +22,7 @@ std::uint64_t count_rows(int height, const Body& body) {
 
 constexpr float kMost = std::numeric_limits<float>::max();
 
-/// One row of depths or of normals; `repaired` grows by the number of repaired values.
+/// One row of depths, of normals or of a signal; `repaired` grows by the number of repaired values.
 struct DepthRow {
   const float* in;
   int width;
@@ -35,6 +34,14 @@ struct NormalRow {
   float towards_camera[3];
   int width;
   float* out[3];
+  int* repaired;
+};
+
+struct SignalRow {
+  const float* in;
+  int width;
+  float unknown, most, too_large;  ///< in place of what is no number, up to which is usable, beyond
+  float* out;
   int* repaired;
 };
 
@@ -75,6 +82,23 @@ HOLDFAST_INLINE void normal_row_body(const NormalRow& a) {
   *a.repaired += repaired;
 }
 
+HOLDFAST_INLINE void signal_row_body(const SignalRow& a) {
+  const float* __restrict in = a.in;
+  float* __restrict out = a.out;
+  const float unknown = a.unknown, most = a.most, too_large = a.too_large;
+  int repaired = 0;
+  for (int x = 0; x < a.width; ++x) {
+    const float v = in[x];
+    const float finite = v <= kMost ? too_large : unknown;
+    const float positive = v <= most ? v : finite;
+    const int beyond = v <= most ? 0 : 1;
+    out[x] = v >= 0.0f ? positive : unknown;
+    repaired += v >= 0.0f ? beyond : 1;
+  }
+  *a.repaired += repaired;
+}
+
+HOLDFAST_KERNEL(signal_row, SignalRow)
 HOLDFAST_KERNEL(depth_row, DepthRow)
 HOLDFAST_KERNEL(normal_row, NormalRow)
 
@@ -140,18 +164,11 @@ std::uint64_t load_signal(const Plane& plane, Channels<float>& out) {
   const float most = visibility ? kLargestVisibility : kLargestRadiance;
   const float too_large = visibility ? unknown : kLargestRadiance;
   return count_rows(plane.height(), [&](int y) {
-    std::uint64_t repaired = 0;
-    for (int c = 0; c < plane.channels(); ++c) {
-      const float* in = plane.channel(c).row(y);
-      float* to = out[c].row(y);
-      for (int x = 0; x < plane.width(); ++x) {
-        const float v = in[x];
-        const bool usable = v >= 0.0f && v <= most;
-        to[x] = usable ? v : (v > 0.0f && std::isfinite(v) ? too_large : unknown);
-        repaired += usable ? 0 : 1;
-      }
-    }
-    return repaired;
+    int repaired = 0;
+    for (int c = 0; c < plane.channels(); ++c)
+      signal_row({plane.channel(c).row(y), plane.width(), unknown, most, too_large, out[c].row(y),
+                  &repaired});
+    return static_cast<std::uint64_t>(repaired);
   });
 }
 

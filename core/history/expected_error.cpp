@@ -96,8 +96,9 @@ struct Blend {
   void record(int x, int y, int slot, float samples, float trust) const {
     const Channels<float>& motion =
         slot == kShadow ? sources.effect->motion : sources.surface->motion;
-    (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
-    (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
+    const bool used = samples > 0.0f;  // not where light comes for the first time
+    (*debug)[kDebugX].at(x, y) = used ? motion[0].at(x, y) : 0.0f;
+    (*debug)[kDebugY].at(x, y) = used ? motion[1].at(x, y) : 0.0f;
     (*debug)[kDebugFrames].at(x, y) = samples;
     (*debug)[kDebugTrust].at(x, y) = trust;
   }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t kLost = 0x1fffu;  // bits of a float that a half has no room for
 constexpr int kGreatest = 14;             // exponent of the greatest value of a block
+constexpr std::int32_t kLeastNormal = (kFloatBias - 14) << 23;  // the bits of 2^-14
 
 /// The finaliser of MurmurHash3 (Appleby).
 HOLDFAST_INLINE void draw_body(const BlockBits& a) {
@@ -23,7 +24,8 @@ HOLDFAST_INLINE void draw_body(const BlockBits& a) {
   }
 }
 
-/// A block's values, scaled and rounded to what halves hold.
+/// A block's values, scaled and rounded to what halves hold; tiny ones only moved by their share of
+/// a step, so that narrowing to the nearest rounds them at random, too.
 struct Rounding {
   const HalfPacking& block;
   float* out;  ///< kHalfBlock
@@ -41,8 +43,15 @@ HOLDFAST_INLINE void round_block_body(const Rounding& a) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const std::uint32_t noise = random[i] & kLost;
-    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
-    out[i] = std::bit_cast<float>((bits + noise) & ~kLost);
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale),
+                        magnitude = bits & kMagnitudeBits;
+    // Above -1/2 and below 1/2 of the least half's step: a multiple of it stays what it is.
+    const float part = static_cast<float>(static_cast<std::int32_t>(2 * noise + 1)) * 0x1p-38f;
+    const float moved = max_of(std::bit_cast<float>(magnitude) + (part - 0x1p-25f), 0.0f);
+    const std::uint32_t tiny = std::bit_cast<std::uint32_t>(moved) | (bits & ~kMagnitudeBits);
+    const std::uint32_t normal = (bits + noise) & ~kLost;
+    out[i] =
+        std::bit_cast<float>(static_cast<std::int32_t>(magnitude) < kLeastNormal ? tiny : normal);
   }
 }
 
@@ -57,7 +66,6 @@ HOLDFAST_INLINE int whole_groups(int count) {
 }
 
 HOLDFAST_INLINE void narrow_plain_body(const Narrowing& a) {
-  constexpr std::int32_t kLeastNormal = (kFloatBias - 14) << 23;
   constexpr std::uint32_t kRebias = std::uint32_t{kFloatBias - 15} << 10;
   const float* in = a.in;
   std::uint16_t* out = a.out;

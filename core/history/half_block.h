@@ -20,9 +20,9 @@ struct BlockBits {
 void draw_block_bits(const BlockBits& block) noexcept;
 
 /// Rounds values up or down with the probability that keeps their mean: a mean of many samples
-/// would otherwise stop where a new sample changes it by less than half a step. What halves hold
-/// exactly stays as it is. The same values and random bits give the same bits on every instruction
-/// set.
+/// would otherwise stop where a new sample changes it by less than half a step, and what is dark
+/// beside something very bright would go to 0. What halves hold exactly stays as it is. The
+/// same values and random bits give the same bits on every instruction set.
 struct HalfPacking {
   const float* in;              ///< finite, absolute values below 1e38
   int count;                    ///< 1..kHalfBlock

@@ -116,8 +116,9 @@ struct RadianceBlend {
   void record(int x, int y, int k, float samples, float weight) const {
     const Channels<float>& motion =
         follows_effect(k, x, y) ? sources.effect->motion : sources.surface->motion;
-    (*debug)[kDebugX].at(x, y) = motion[0].at(x, y);
-    (*debug)[kDebugY].at(x, y) = motion[1].at(x, y);
+    const bool used = samples > 0.0f;  // not where light has changed
+    (*debug)[kDebugX].at(x, y) = used ? motion[0].at(x, y) : 0.0f;
+    (*debug)[kDebugY].at(x, y) = used ? motion[1].at(x, y) : 0.0f;
     (*debug)[kDebugFrames].at(x, y) = samples;
     (*debug)[kDebugTrust].at(x, y) = weight;
   }

@@ -15,6 +15,15 @@ namespace {
 constexpr double kLeastDistance = 1e-6;   // metres, of a point light
 constexpr double kLeastSunRadius = 1e-4;  // tangent; a smaller sun is a single direction
 
+// Sine above a surface's horizon up to which a light does not reach it: rounding puts a light in
+// the surface's own plane up to 1e-5 on either side of it (100 m from the camera and 1 m from the
+// light), and whether light is 0 decides more than its value (core/history/unlit.h). Ours.
+constexpr double kLeastElevation = 1e-4;
+
+// The least share of a light that reaches: a sliver's or a narrow lobe's is a difference of near
+// equals, which rounding must not make 0. Less than that of anything that shines. Ours.
+constexpr double kLeastShare = 1e-25;
+
 /// Corners of the regular polygon whose area is the unit circle's.
 template <class T>
 const std::array<glm::vec<2, T>, kDiskCorners>& disk_corners() {
@@ -52,6 +61,8 @@ void add_disk(const glm::vec<3, T>& centre, const glm::vec<3, T>& x, const glm::
 template <class T>
 Polygon<T> polygon_of(const PlacedLight<T>& light, const glm::vec<3, T>& point) {
   Polygon<T> out;
+  const glm::vec<3, T> none(0);
+  if (light.half_x == none || light.half_y == none) return out;
   const auto offset = light.centre - point;
   switch (light.shape) {
     case LightShape::kRectangle:
@@ -87,6 +98,17 @@ Polygon<T> transformed(const glm::mat<3, 3, T>& matrix, Polygon<T> polygon) {
   return polygon;
 }
 
+/// Whether a light that is clipped to the horizon stands above it by more than rounding: a corner
+/// does, or, where the light is so near that none does, it covers much of the sky.
+template <class T>
+bool reaches(const Polygon<T>& light) {
+  for (std::size_t i = 0; i < light.count; ++i) {
+    const auto& corner = light.corners[i];
+    if (corner.z > T(kLeastElevation) * glm::length(corner)) return true;
+  }
+  return light.count > 0 && cosine_share(light) > T(kLeastElevation);
+}
+
 template <class T>
 bool is_black(const glm::vec<3, T>& colour) {
   return colour == glm::vec<3, T>(0);
@@ -99,7 +121,7 @@ glm::vec<3, T> delta_light(const PlacedLight<T>& light, const ShadingPoint<T>& p
   const auto offset = is_near ? light.centre - point.position : light.centre;
   const T distance = max_of(glm::length(offset), T(kLeastDistance));
   const auto l = tangent_from_frame * (offset / distance);
-  if (!(l.z > T(0))) return glm::vec<3, T>(0);
+  if (!(l.z > T(kLeastElevation))) return glm::vec<3, T>(0);
   auto share = point.albedo * (l.z * T(std::numbers::inv_pi));
   if (!is_black(point.specular)) {
     auto v = tangent_from_frame * point.to_viewer;
@@ -144,13 +166,13 @@ glm::vec<3, T> unshadowed_light(const PlacedLight<T>& light, const ShadingPoint<
   if (light.is_delta) return delta_light(light, point, tangent_from_frame);
   const Polygon<T> visible =
       clip_to_horizon(transformed(tangent_from_frame, polygon_of(light, point.position)));
-  if (visible.count == 0) return glm::vec<3, T>(0);
+  if (!reaches(visible)) return glm::vec<3, T>(0);
   glm::vec<3, T> share(0);
-  if (!is_black(point.albedo)) share = point.albedo * cosine_share(visible);
+  if (!is_black(point.albedo)) share = point.albedo * max_of(T(kLeastShare), cosine_share(visible));
   if (!is_black(point.specular)) {
     const LtcLobe<T> lobe = ltc_lobe(point.roughness, glm::dot(point.normal, point.to_viewer));
     const T part = cosine_share(clip_to_horizon(transformed(lobe.cosine_from_lobe, visible)));
-    share += point.specular * min_of(T(1), part / lobe.above_horizon);
+    share += point.specular * max_of(T(kLeastShare), min_of(T(1), part / lobe.above_horizon));
   }
   return light.emission * share;
 }

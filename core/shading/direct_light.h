@@ -44,8 +44,10 @@ struct ShadingPoint {
 /// without extent need no integral: D = cosine / pi, S = BRDF * cosine / magnitude.
 ///
 /// Fresnel's term is the lobe's mean, which `specular` contains. 0 behind a one-sided light, inside
-/// a sphere, and for an extended light of size zero. Finite for finite input, except that a point
-/// light within 1e-6 m counts as that far away. For T = float and double.
+/// a sphere, for an extended light of size zero, and where the light stands no more than 1e-4 rad
+/// above the surface, as in its plane; everywhere else D and S are more than 0, so that rounding
+/// does not decide what is lit. Finite for finite input, except that a point light within 1e-6 m
+/// counts as that far away. For T = float and double.
 /// Heitz et al., SIGGRAPH 2016; ours: what the transform puts below the horizon is cut off first,
 /// and the rest divided by its share, so that a white furnace returns `specular` exactly.
 template <class T>

@@ -1,5 +1,7 @@
 // Unshadowed light against the integral of the BRDF over the light.
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "core/shading/direct_light.h"
@@ -192,6 +194,47 @@ TEST(UnshadowedLight, IsZeroBehindTheLightBelowTheHorizonAndInsideASphere) {
     EXPECT_EQ(shade(unit_light(shape, 0.5, 1), aimed({0, -2, 0.1}), point), zero);
   EXPECT_EQ(shade(unit_light(LightShape::kDirectional, 0.01), aimed({0, -1, 0.1}), point), zero);
   EXPECT_EQ(shade(unit_light(LightShape::kSphere, 2), aimed({0, 1, 0}), point), zero);
+}
+
+// Where light ends at exactly 0, rounding would decide on which side a surface in the plane of its
+// light is, and so what a filter does with its visibility (core/history/unlit.h).
+TEST(UnshadowedLight, ReachesNoSurfaceInItsOwnPlaneWhereverThatIs) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const LightShape shape : {LightShape::kRectangle, LightShape::kDisk, LightShape::kPoint})
+    for (int k = 0; k < 2000; ++k) {
+      const glm::dvec3 n = glm::normalize(glm::dvec3(unit(random), unit(random), unit(random)));
+      const glm::dvec3 along = glm::normalize(glm::cross(n, glm::dvec3(unit(random), 1, 0.3)));
+      const glm::dvec3 centre(30 * unit(random), 30 * unit(random), 30 * unit(random));
+      ShadingPoint<float> point;
+      point.position = centre + (1.5 + std::abs(unit(random))) * along;
+      point.normal = n;
+      point.to_viewer = glm::normalize(n + 0.5 * along);
+      point.albedo = point.specular = glm::vec3(0.5f);
+      const Light light = unit_light(shape, 0.2, 0.4);
+      const glm::vec3 found =
+          unshadowed_light(place_light<float>(light, aimed(centre, centre + n)), point);
+      EXPECT_EQ(found, glm::vec3(0.0f)) << k;
+    }
+}
+
+// A sliver above the horizon is a difference of near equals, which floats may make 0.
+TEST(UnshadowedLight, IsMoreThanZeroInFloatWhereASliverReaches) {
+  const Light light = unit_light(LightShape::kRectangle, 0.4, 0.4);
+  ShadingPoint<float> point;
+  point.normal = {0, 1, 0};
+  for (const glm::vec3 albedo : {glm::vec3(0.5f), glm::vec3(0)}) {
+    point.albedo = albedo;
+    point.specular = glm::vec3(0.5f);
+    point.roughness = 0.05f;
+    for (int k = 0; k < 400; ++k) {
+      point.to_viewer = glm::normalize(glm::vec3(0.2f, 1, 0.01f * static_cast<float>(k)));
+      const glm::dvec3 at(-2, -0.2 + 4e-4 + 1e-5 * k, 0.3);
+      const glm::vec3 found =
+          unshadowed_light(place_light<float>(light, aimed(at, {0, at.y, 0.3})), point);
+      EXPECT_GT(found.x, 0.0f) << k;
+    }
+  }
 }
 
 TEST(UnshadowedLight, InFloatAgreesWithDouble) {

@@ -23,7 +23,8 @@ class Recipes : public testing::TestWithParam<std::string> {
 TEST_P(Recipes, AgreeWithTheOracle) { compare(64, 48, 6); }
 
 TEST_P(Recipes, AgreeWithTheOracleAtSizesThatFillNoBlock) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {2, 3}, {17, 9}, {67, 5}})
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {2, 3}, {17, 9}, {67, 5}, {133, 5}, {5, 133}})
     compare(width, height, 3);
 }
 
