@@ -25,7 +25,7 @@ World still_world(const std::string& recipe, const Histories& histories) {
 
 Entry brightness(const char* text, double radiance, const Histories& histories) {
   return {histories.name("radiance-" + std::string(text)), "all light times " + std::string(text),
-          "as with ordinary light, times " + std::string(text), histories.limit({1e-4, 1e-3}, 0.02),
+          "as with ordinary light, times " + std::string(text), histories.limit(kScaled, 0.02),
           [=](const std::string& recipe) {
             World world;
             world.recipe = recipe;

@@ -22,7 +22,7 @@ Entry scaled(const char* metres_text, double metres, const Histories& histories)
   return {histories.name("scale-" + std::string(metres_text)),
           "the scene in units of " + std::string(metres_text) + " m",
           "as in units of 1 m, relative to each plane's largest value",
-          histories.limit({1e-4, 1e-3}, kRedrawn), [=](const std::string& recipe) {
+          histories.limit(kScaled, kRedrawn), [=](const std::string& recipe) {
             World world = plain(recipe, histories);
             const Outcome ordinary = filter_world(world);
             world.metres = metres;
@@ -39,14 +39,14 @@ std::vector<Entry> scale_entries(const Histories& histories) {
   entries.push_back({histories.name("far-from-origin"),
                      "camera and scene 1e7 m from the world's origin",
                      "as at the origin, relative to each plane's largest value",
-                     histories.limit({1e-4, 1e-3}, kRedrawn), [=](const std::string& recipe) {
+                     histories.limit(kScaled, kRedrawn), [=](const std::string& recipe) {
                        World world = plain(recipe, histories);
                        const Outcome ordinary = filter_world(world);
                        world.place = glm::translate(glm::dmat4(1), {1e7, -1e7, 1e7});
                        return relative_difference(filter_world(world), ordinary);
                      }});
   entries.push_back({histories.name("scale-1e6-far"), "units of 1e6 m, 1e7 m from the origin",
-                     "as in units of 1 m at the origin", histories.limit({1e-4, 1e-3}, kRedrawn),
+                     "as in units of 1 m at the origin", histories.limit(kScaled, kRedrawn),
                      [=](const std::string& recipe) {
                        World world = plain(recipe, histories);
                        const Outcome ordinary = filter_world(world);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/frame/error.h"
+#include "core/kernels/isa.h"
 
 namespace holdfast::stability {
 
@@ -35,6 +36,21 @@ INSTANTIATE_TEST_SUITE_P(Table, Extremes, testing::ValuesIn(small_entries()),
                              if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
                            return name + "_" + std::to_string(row.index);
                          });
+
+// What differs between them is rounding, which rows of scales look for.
+TEST(StabilityTable, ScalesAlikeOnEveryInstructionSet) {
+  const Isa before = selected_isa();
+  std::vector<Entry> entries = scale_entries();
+  for (const Entry& entry : radiance_entries()) entries.push_back(entry);
+  for (const Isa isa : available_isas()) {
+    select_isa(isa);
+    for (const Entry& entry : entries) {
+      const Finding finding = measure(entry, kRecipes);
+      EXPECT_TRUE(finding.passed) << isa_name(isa) << stability_markdown({finding});
+    }
+  }
+  select_isa(before);
+}
 
 Entry with_error(double error) {
   return {"a", "b", "c", {1, 2}, [=](const std::string&) { return error; }};
