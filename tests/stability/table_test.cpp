@@ -40,8 +40,11 @@ INSTANTIATE_TEST_SUITE_P(Table, Extremes, testing::ValuesIn(small_entries()),
 // What differs between them is rounding, which rows of scales look for.
 TEST(StabilityTable, ScalesAlikeOnEveryInstructionSet) {
   const Isa before = selected_isa();
-  std::vector<Entry> entries = scale_entries();
-  for (const Entry& entry : radiance_entries()) entries.push_back(entry);
+  std::vector<Entry> entries = small_entries();
+  std::erase_if(entries, [](const Entry& e) {
+    return e.name.rfind("scale-", 0) != 0 && e.name.rfind("radiance-", 0) != 0;
+  });
+  ASSERT_GE(entries.size(), 16u);
   for (const Isa isa : available_isas()) {
     select_isa(isa);
     for (const Entry& entry : entries) {
