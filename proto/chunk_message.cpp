@@ -108,24 +108,30 @@ class Cursor {
 
 }  // namespace
 
-grpc::ByteBuffer chunk_message(const ChunkFields& fields, const grpc::Slice& data) {
+grpc::ByteBuffer chunk_message(const ChunkFields& fields, std::span<const grpc::Slice> data) {
+  std::size_t bytes = 0;
+  for (const grpc::Slice& piece : data) bytes += piece.size();
   Head inner, tail, head;
   inner.field(kPlaneTag, fields.plane);
   inner.field(kOffsetTag, fields.offset);
   inner.field(kLastTag, fields.last ? 1 : 0);
-  inner.field(kDataTag, data.size());  // without data there is no length either
+  inner.field(kDataTag, bytes);  // without data there is no length either
   tail.field(kPlainTag, fields.plain_bytes);
   tail.field(kSharedTag, fields.shared_bytes);
   head.byte(kChunkTag);
-  head.varint(inner.size() + data.size() + tail.size());
+  head.varint(inner.size() + bytes + tail.size());
   head.append(inner);
-  if (data.size() == 0) {
+  if (bytes == 0) {
     head.append(tail);
     const grpc::Slice all = head.slice();
     return grpc::ByteBuffer(&all, 1);
   }
-  const grpc::Slice slices[] = {head.slice(), data, tail.slice()};
-  return grpc::ByteBuffer(slices, tail.size() > 0 ? 3 : 2);
+  std::vector<grpc::Slice> slices;
+  slices.reserve(data.size() + 2);
+  slices.push_back(head.slice());
+  slices.insert(slices.end(), data.begin(), data.end());
+  if (tail.size() > 0) slices.push_back(tail.slice());
+  return grpc::ByteBuffer(slices.data(), slices.size());
 }
 
 ChunkView* ChunkReader::read(const grpc::ByteBuffer& message) {

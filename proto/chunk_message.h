@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -25,8 +26,8 @@ struct ChunkFields {
 };
 
 /// A DenoiseRequest or DenoiseResponse, which are the same here, with a PlaneChunk of these fields.
-/// `data` is not copied.
-grpc::ByteBuffer chunk_message(const ChunkFields& fields, const grpc::Slice& data);
+/// `data`, in pieces one after the other, is not copied.
+grpc::ByteBuffer chunk_message(const ChunkFields& fields, std::span<const grpc::Slice> data);
 
 /// A PlaneChunk that was received; its data in the pieces in which it came.
 struct ChunkView {

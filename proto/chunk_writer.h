@@ -15,11 +15,12 @@ struct OutgoingMessage {
   std::size_t shared_bytes = 0;  ///< of these, in shared memory
 };
 
-/// Turns planes into messages with a PlaneChunk each. A plane that lies in memory as it lies on the
-/// wire (full format, no codec, rows without padding: widths that are multiples of 16) is not
-/// copied: messages refer to it. Otherwise the piece is made in a buffer, which is used again once
-/// its message is sent. Where there is shared memory with a free cell, the piece is written there
-/// instead. One thread at a time; messages may be sent by others and outlive it.
+/// Turns planes into messages with a PlaneChunk each. A plane whose rows lie in memory as they lie
+/// on the wire (full format, no codec) is not copied: messages refer to it, to each row where
+/// padding lies between them. If the rows are short, or not as on the wire, the piece is made in a
+/// buffer, which is used again once its message is sent. Where there is shared memory with a free
+/// cell, the piece is written there instead. One thread at a time; messages may be sent by others
+/// and outlive it.
 class ChunkWriter {
  public:
   ChunkWriter();
@@ -39,14 +40,15 @@ class ChunkWriter {
 
  private:
   class Buffers;
-  grpc::Slice in_stream(const Plane& plane, PlaneCoding coding, std::size_t offset,
-                        const std::shared_ptr<const void>& owner, std::size_t& bytes);
+  void in_stream(const Plane& plane, PlaneCoding coding, std::size_t offset,
+                 const std::shared_ptr<const void>& owner, std::size_t& bytes);
   std::size_t in_cell(const Plane& plane, PlaneCoding coding, std::size_t offset,
                       std::size_t& bytes);
 
   CellWriter* cells_ = nullptr;
   PlaneCoder coder_;
   std::shared_ptr<Buffers> buffers_;
+  std::vector<grpc::Slice> data_;  ///< of the message being made
 };
 
 }  // namespace holdfast::wire

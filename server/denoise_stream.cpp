@@ -188,8 +188,8 @@ void DenoiseStream::post(FrameSlot& slot) {
   deadlines_.frame_ended();
   if (!slot.error) ++waiting_;
   state_.scheduler.post(
-      session_->strand(), [self = shared_from_this(), &slot] { self->filter(slot); },
-      slot.deadline);
+      session_->strand(), [self = shared_from_this(), &slot] { self->filter(slot); }, slot.deadline,
+      slot.config->latest);
 }
 
 void DenoiseStream::filter(FrameSlot& slot) {

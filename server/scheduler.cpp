@@ -39,12 +39,14 @@ Scheduler::~Scheduler() {
 }
 
 void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()> job,
-                     std::optional<std::chrono::steady_clock::time_point> deadline) {
+                     std::optional<std::chrono::steady_clock::time_point> deadline,
+                     bool newest_first) {
   {
     const std::lock_guard lock(mutex_);
-    strand->jobs_.push_back({std::move(job), deadline});
+    strand->jobs_.push_back({std::move(job), deadline, newest_first});
+    strand->newest_ = ++posted_;
     if (strand->ready_) return;
-    strand->ready_ = true;
+    strand->ready_ = strand->fresh_ = true;
     strand->used_ = std::max(strand->used_, level_);
     line_.push_back(strand);
   }
@@ -53,21 +55,38 @@ void Scheduler::post(const std::shared_ptr<Strand>& strand, std::function<void()
 
 /// Takes the strand whose turn it is out of the line; called with the mutex held.
 std::shared_ptr<Strand> Scheduler::next() {
-  auto it = std::min_element(line_.begin(), line_.end(),
-                             [](const auto& a, const auto& b) { return a->used_ < b->used_; });
-  level_ = std::max(level_, (*it)->used_);
-  const auto limit = (*it)->used_ + kDeadlineSlack;
-  constexpr auto kNever = std::chrono::steady_clock::time_point::max();
-  auto earliest = kNever;
-  for (auto other = line_.begin(); other != line_.end(); ++other) {
-    const auto due = (*other)->jobs_.front().deadline.value_or(kNever);
-    if ((*other)->used_ > limit || due >= earliest) continue;
-    earliest = due;
-    it = other;
-  }
+  const auto it = turn();
   std::shared_ptr<Strand> strand = std::move(*it);
   line_.erase(it);
   return strand;
+}
+
+Scheduler::Line::iterator Scheduler::turn() {
+  const auto least =
+      (*std::min_element(line_.begin(), line_.end(), [](const auto& a, const auto& b) {
+        return a->used_ < b->used_;
+      }))->used_;
+  level_ = std::max(level_, least);
+  const auto goes_before = [](const Strand& a, const Strand& b) {
+    constexpr auto kNever = std::chrono::steady_clock::time_point::max();
+    const auto due_a = a.jobs_.front().deadline.value_or(kNever);
+    const auto due_b = b.jobs_.front().deadline.value_or(kNever);
+    if (due_a != due_b) return due_a < due_b;
+    if (a.fresh_ || b.fresh_) return a.fresh_ && !b.fresh_;
+    return a.used_ < b.used_;
+  };
+  auto first = line_.end(), newest = line_.end();
+  for (auto it = line_.begin(); it != line_.end(); ++it) {
+    if ((*it)->used_ > least + kSlack) continue;
+    if ((*it)->jobs_.front().newest_first) {
+      if (newest == line_.end() || (*it)->newest_ > (*newest)->newest_) newest = it;
+      continue;
+    }
+    if (first == line_.end() || goes_before(**it, **first)) first = it;
+  }
+  if (first == line_.end()) return newest;
+  if (newest == line_.end()) return first;
+  return (*newest)->used_ < (*first)->used_ ? newest : first;
 }
 
 void Scheduler::lead() {
@@ -86,6 +105,7 @@ void Scheduler::lead() {
     job = nullptr;  // what it holds is released before anyone can see the strand idle
     lock.lock();
     strand->used_ += used;
+    strand->fresh_ = false;
     if (strand->jobs_.empty()) {
       strand->ready_ = false;
     } else {

@@ -40,6 +40,7 @@ void LoadResult::add(const LoadResult& other) {
   late += other.late;
   clients += other.clients;
   reconnects += other.reconnects;
+  sharing += other.sharing;
   elapsed_s = std::max(elapsed_s, other.elapsed_s);
   bytes_in += other.bytes_in;
   bytes_out += other.bytes_out;

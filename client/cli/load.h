@@ -61,6 +61,7 @@ struct LoadResult {
   std::int64_t skipped = 0;                  ///< left out by the sessions themselves
   std::int64_t late = 0;                     ///< of all that were sent, beyond their deadline
   std::int64_t reconnects = 0;
+  std::int64_t sharing = 0;                   ///< clients whose planes went through shared memory
   double elapsed_s = 0;                       ///< from the first submit to the last answer
   std::uint64_t bytes_in = 0, bytes_out = 0;  ///< plane bytes to the server and back
   LoadTimes times;

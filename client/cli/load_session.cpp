@@ -80,6 +80,7 @@ void LoadSession::run(const Span& span) {
   result_.clients = 1;
   result_.elapsed_s = ms_between(load_start_, Clock::now()) / 1000;
   result_.reconnects = session_.reconnects();
+  result_.sharing = session_.shared_memory() ? 1 : 0;
   result_.bytes_in = session_.traffic().sent;
   result_.bytes_out = session_.traffic().received;
 }

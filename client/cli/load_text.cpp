@@ -59,6 +59,8 @@ nlohmann::ordered_json load_json(const LoadResult& result) {
           {"bytes_in", result.bytes_in},
           {"bytes_out", result.bytes_out},
           {"reconnects", result.reconnects},
+          {"shared_memory",
+           {{"asked", !options.access.shared_memory.empty()}, {"clients", result.sharing}}},
           {"errors", errors},
           {"ms", ms}};
 }
@@ -76,6 +78,11 @@ std::string load_text(const LoadResult& result) {
   if (options.churn_s > 0)
     text += printed("each client left after %g s: %lld sessions in all\n", options.churn_s,
                     static_cast<long long>(result.clients));
+  if (!options.access.shared_memory.empty())
+    text += printed(
+        "shared memory: %lld of %lld clients%s\n", static_cast<long long>(result.sharing),
+        static_cast<long long>(result.clients),
+        result.sharing < result.clients ? "; planes of the others went through the stream" : "");
   text += printed("answered %lld of %lld frames, %.1f frames/s, %.1f MB/s in, %.1f MB/s out\n",
                   static_cast<long long>(result.answered), static_cast<long long>(result.submitted),
                   result.frames_per_second(),

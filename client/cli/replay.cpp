@@ -101,6 +101,8 @@ class Replay {
     while (accept(session_.receive())) {
     }
     const client::Traffic traffic = session_.traffic();
+    result_.shared_memory_asked = !options_.access.shared_memory.empty();
+    result_.shared_memory = session_.shared_memory();
     result_.bytes_in = traffic.sent;
     result_.bytes_out = traffic.received;
     const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
@@ -168,6 +170,7 @@ nlohmann::ordered_json replay_json(const ReplayResult& result) {
       {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},
       {"bytes_in", result.bytes_in},
       {"bytes_out", result.bytes_out},
+      {"shared_memory", {{"asked", result.shared_memory_asked}, {"used", result.shared_memory}}},
       {"non_finite_in", result.non_finite_in},
       {"non_finite_out", result.non_finite_out}};
   if (result.with_budget) json["presets"] = result.presets;

@@ -41,6 +41,8 @@ struct ReplayResult {
   std::int64_t frames = 0;
   std::string recipe, preset;          ///< the preset of most frames
   std::map<std::string, int> presets;  ///< frames by preset
+  bool shared_memory_asked = false;    ///< for
+  bool shared_memory = false;          ///< and got: planes went through it
   bool with_budget = false;            ///< presets were chosen to keep to one
   int width = 0, height = 0;
   std::vector<double> core_ms;       ///< of each frame, inside the denoiser

@@ -90,8 +90,8 @@ void Connection::OnReadDone(bool ok) {
       ended_ = true;
       release = true;
       wake_.notify_all();
+      changed_.notify_all();
     }
-    changed_.notify_all();
   }
   if (release) RemoveHold();
 }
@@ -121,6 +121,7 @@ void Connection::handle_response() {
   switch (response_.message_case()) {
     case Message::kWelcome:
       welcome_ = true;
+      changed_.notify_all();  // not with each message: the keeper waits for the end all the time
       if (!response_.welcome().shared_memory()) cells_.reset();
       if (cells_) writer_.chunks.use(&cells_->writer);
       exchange_.opened(static_cast<int>(response_.welcome().credits()), config_.fresh);

@@ -54,6 +54,37 @@ TEST_F(Access, LoadAndReplayReachAServerThatAsksForACertificateAndAToken) {
   EXPECT_TRUE(std::filesystem::exists(dir / "out" / "frame.0001.exr"));
 }
 
+TEST_F(Access, LoadAndReplaySayWhetherTheyGotTheSharedMemoryThatTheyAskedFor) {
+  const std::string memory = path("memory"), result = path("result.json");
+  serve({"--shared-memory", memory});
+  render("fence", {"--frames", "2", "--reference-spp", "0"});
+  for (const std::string& asked : {memory, path("elsewhere")}) {
+    const bool got = asked == memory;
+    const std::vector<std::string> access{"--tls-ca", pem("ca.pem"), "--shared-memory",
+                                          asked,      "--json",      result};
+    std::vector<std::string> more = access;
+    more.insert(more.end(), {"--sessions", "2"});
+    ASSERT_EQ(load(more), 0) << text;
+    EXPECT_NE(text.find(got ? "shared memory: 2 of 2 clients\n"
+                            : "shared memory: 0 of 2 clients; planes of the others went through"),
+              std::string::npos)
+        << text;
+    auto json = nlohmann::json::parse(test::file_text(result), nullptr, false);
+    EXPECT_EQ(json["shared_memory"], nlohmann::json({{"asked", true}, {"clients", got ? 2 : 0}}));
+
+    more = {"replay", path("in"), "-o", path("out"), "--quiet", "--server", address};
+    more.insert(more.end(), access.begin(), access.end());
+    ASSERT_EQ(holdfast(more), 0) << text;
+    EXPECT_EQ(text.find("no shared memory at") == std::string::npos, got) << text;
+    json = nlohmann::json::parse(test::file_text(result), nullptr, false);
+    EXPECT_EQ(json["shared_memory"], nlohmann::json({{"asked", true}, {"used", got}}));
+  }
+  ASSERT_EQ(load({"--tls-ca", pem("ca.pem"), "--json", result}), 0) << text;
+  const auto json = nlohmann::json::parse(test::file_text(result), nullptr, false);
+  EXPECT_EQ(json["shared_memory"], nlohmann::json({{"asked", false}, {"clients", 0}}));
+  EXPECT_EQ(text.find("shared memory"), std::string::npos) << text;
+}
+
 TEST_F(Access, ThatIsRefusedEndsWithThree) {
   serve({"--token-file", file("tokens", "open-sesame\n")});
   EXPECT_EQ(load({"--tls-ca", pem("ca.pem")}), 3);

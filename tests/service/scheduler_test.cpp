@@ -125,8 +125,111 @@ TEST(Scheduler, LendsNoMoreThanTheSlackToWhoHasDeadlines) {
     for (int i = 0; i < 4; ++i) scheduler.post(patient, [&] { order += 'p', clock.pass(10ms); });
     posted.count_down();
   }
-  // Never more than 20 ms and the frame at hand ahead.
-  EXPECT_EQ(order, "hhhphphphphh");
+  // Never more than 40 ms and the frame at hand ahead.
+  EXPECT_EQ(order, "hhhhhphphphp");
+}
+
+TEST(Scheduler, LetsThoseWhoKeepUpGoInTheOrderInWhichTheyCameHoweverTheirFramesDiffer) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    const auto dear = std::make_shared<Strand>(), cheap = std::make_shared<Strand>();
+    scheduler.post(dear, [&] { clock.pass(30ms); });
+    scheduler.post(cheap, [&] { clock.pass(1ms); });
+    std::latch posted(1), both(2);
+    for (const auto& strand : {dear, cheap}) scheduler.post(strand, [&] { both.count_down(); });
+    both.wait();
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    scheduler.post(dear, [&] { order += 'd'; });
+    scheduler.post(cheap, [&] { order += 'c'; });
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "dc") << "and not that of the time used";
+}
+
+TEST(Scheduler, LetsThoseWhoKeepUpGoBeforeThoseWhoFlood) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    std::latch posted(1), reached(1);
+    const std::shared_ptr<Strand> floods[] = {std::make_shared<Strand>(),
+                                              std::make_shared<Strand>()};
+    for (const auto& flood : floods)
+      for (int i = 0; i < 3; ++i)
+        scheduler.post(flood, [&, i] {
+          order += 'f';
+          clock.pass(10ms);
+          if (i != 1 || order.size() != 3) return;
+          reached.count_down();
+          posted.wait();
+        });
+    reached.wait();
+    scheduler.post(std::make_shared<Strand>(), [&] { order += 'k', clock.pass(10ms); });
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "fffkfff") << "though the other flood came first and has used as little";
+}
+
+/// Jobs of sessions that keep the latest, posted in the order of their letters while another runs.
+TEST(Scheduler, TakesTheNewestFirstOfThoseWhoWantThat) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    const std::chrono::steady_clock::time_point start{};
+    const auto renewed = std::make_shared<Strand>();
+    const auto post = [&](const std::shared_ptr<Strand>& strand, char letter,
+                          std::chrono::milliseconds due) {
+      scheduler.post(
+          strand, [&order, letter] { order += letter; }, start + due, true);
+    };
+    post(renewed, 'a', 10ms);
+    post(std::make_shared<Strand>(), 'b', 20ms);
+    post(std::make_shared<Strand>(), 'c', 30ms);
+    post(renewed, 'd', 40ms);
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "adcb") << "a newer job brings its strand forward, and jobs keep their order";
+}
+
+TEST(Scheduler, HoldsThoseWhoWantTheNewestFirstToTheirShare) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    const auto modest = std::make_shared<Strand>(), greedy = std::make_shared<Strand>();
+    for (int i = 0; i < 4; ++i)
+      scheduler.post(
+          modest, [&] { order += 'm', clock.pass(10ms); }, {}, true);
+    for (int i = 0; i < 8; ++i)
+      scheduler.post(
+          greedy, [&] { order += 'g', clock.pass(10ms); }, {}, true);
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "gggggmgmgmgm") << "never more than 40 ms and the frame at hand ahead";
+}
+
+TEST(Scheduler, SharesByTimeBetweenThoseWhoWantTheNewestFirstAndOthers) {
+  std::string order;
+  {
+    ManualClock clock;
+    Scheduler scheduler(1, clock.now());
+    std::latch posted(1);
+    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    const auto all = std::make_shared<Strand>(), latest = std::make_shared<Strand>();
+    for (int i = 0; i < 4; ++i) scheduler.post(all, [&] { order += 'a', clock.pass(10ms); });
+    for (int i = 0; i < 4; ++i)
+      scheduler.post(
+          latest, [&] { order += 'l', clock.pass(10ms); }, {}, true);
+    posted.count_down();
+  }
+  EXPECT_EQ(order, "alalalal");
 }
 
 TEST(Scheduler, UsesNoMoreThreadsThanItWasGiven) {

@@ -163,6 +163,41 @@ TEST_F(HostileSharer, ThatNeverTellsWhatItHasReadGetsTheRestThroughTheStream) {
   EXPECT_GT(inside, 0);
 }
 
+// It tells of a cell when all are full and the server, which waits for one, has nothing else to
+// say; and of one only.
+TEST_F(HostileSharer, ThatTellsAtTheLastMomentGetsEachPieceWhole) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < 3; ++i) frames.push_back(test::small_frame(config, i));
+  const std::vector<PlaneSet> expected = test::direct(config, frames);
+  RawStream stream(*client);
+  ASSERT_TRUE(attach(stream));
+  const std::vector<PlaneId> results = result_planes(config);
+  std::uint64_t read = 0, told = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    stream.write(frames[i], config);
+    ASSERT_FALSE(result(stream).has_error());
+    for (std::size_t pieces = 0; pieces < results.size();) {
+      const v1::DenoiseResponse response = stream.read();
+      if (response.has_shared_read()) continue;
+      const v1::PlaneChunk& chunk = response.plane_chunk();
+      ASSERT_TRUE(chunk.last() && chunk.data().empty()) << "all small, and all shared";
+      const Plane& plane = expected[i].at(results[chunk.plane()]);
+      std::string bytes(wire::plane_bytes(plane, wire::PlaneFormat::kF32), ' ');
+      wire::read_plane_bytes(plane, wire::PlaneFormat::kF32, 0, bytes.size(),
+                             reinterpret_cast<std::byte*>(bytes.data()));
+      EXPECT_TRUE(cells->reader.take(chunk.shared_bytes()) == bytes);
+      ++pieces;
+      if (++read - told < wire::SharedLayout{}.cells) continue;
+      v1::DenoiseRequest message;
+      message.mutable_shared_read()->set_cells(++told);
+      stream.write(message);
+    }
+  }
+  EXPECT_GT(told, 0u) << "the server has waited";
+  stream.writes_done();
+  EXPECT_TRUE(stream.finish().ok());
+}
+
 TEST_F(HostileSharer, ThatFloodsWithoutReadingIsToldOnceAndCostsNoMemory) {
   RawStream stream(*client);
   ASSERT_TRUE(attach(stream));

@@ -18,7 +18,8 @@ ReadOutcome fuzz_chunk_message(std::uint32_t seed);
 ReadOutcome fuzz_block(std::uint32_t seed);
 
 /// Frames as messages that are left out, doubled, exchanged, cut off, or wrong in a field or a
-/// byte, handled by the rules of a stream. A problem is an error that names no rule, more memory
+/// byte, handled by the rules of a stream; half of the streams have shared memory, where sizes,
+/// cells and bytes are wrong as well. A problem is an error that names no rule, more memory
 /// than 2 MiB and 8 times the messages, and an undamaged frame that is not accepted afterwards with
 /// the right bits.
 ReadOutcome fuzz_frames(std::uint32_t seed);

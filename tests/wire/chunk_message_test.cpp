@@ -43,6 +43,12 @@ v1::PlaneChunk chunk_of(const ChunkFields& fields, const std::string& data) {
   return chunk;
 }
 
+/// `data` in two slices, so that the lengths that are written are those of all.
+std::vector<grpc::Slice> pieces_of(const std::string& data) {
+  const std::size_t first = data.size() / 3;
+  return {grpc::Slice(data.data(), first), grpc::Slice(data.data() + first, data.size() - first)};
+}
+
 /// Values where the lengths of their encodings change, and the defaults.
 std::vector<ChunkFields> many_fields() {
   std::vector<ChunkFields> out;
@@ -62,7 +68,7 @@ TEST(ChunkMessage, IsByteForByteWhatTheGeneratedClassWrites) {
     const std::string data(size, 'x');
     for (const ChunkFields& fields : many_fields()) {
       if (size > 16384 && fields.plane > 1) continue;  // time
-      const std::string ours = text_of(chunk_message(fields, grpc::Slice(data)));
+      const std::string ours = text_of(chunk_message(fields, pieces_of(data)));
       v1::DenoiseRequest request;
       *request.mutable_plane_chunk() = chunk_of(fields, data);
       ASSERT_TRUE(ours == request.SerializeAsString()) << size << " bytes at " << fields.offset;
@@ -155,9 +161,10 @@ Plane noise(PlaneKind kind, int width, int height) {
   return plane;
 }
 
-/// Widths whose rows are padded and are not, so that both ways of the writer are taken.
+/// Widths whose rows are padded and are not, short and long, so that all ways of the writer are
+/// taken; chunks begin and end within rows.
 TEST(ChunkWriter, PlanesSurviveTheWayWithAndWithoutACopy) {
-  for (const int width : {1, 37, 64, 160, 1024}) {
+  for (const int width : {1, 37, 64, 160, 1000, 1024, 1030}) {
     const auto plane = std::make_shared<Plane>(noise(PlaneKind::kNormal, width, 700));
     for (const auto coding :
          {full_coding(PlaneKind::kNormal), PlaneCoding{PlaneFormat::kF32, Codec::kLz4}}) {
@@ -189,17 +196,40 @@ TEST(ChunkWriter, PlanesSurviveTheWayWithAndWithoutACopy) {
 }
 
 TEST(ChunkWriter, KeepsThePlaneUntilItsMessageIsGone) {
-  auto plane = std::make_shared<Plane>(noise(PlaneKind::kDepth, 64, 8));
-  const std::weak_ptr<Plane> alive = plane;
+  for (const int width : {64, 1024}) {
+    auto plane = std::make_shared<Plane>(noise(PlaneKind::kDepth, width, 8));
+    ASSERT_EQ(is_packed(*plane), width == 64);
+    const std::weak_ptr<Plane> alive = plane;
+    OutgoingMessage message;
+    ChunkWriter().write(*plane, full_coding(PlaneKind::kDepth), 0, 0, plane, message);
+    const float last = plane->channel(0).at(width - 1, 7);
+    plane.reset();
+    ASSERT_FALSE(alive.expired());
+    const std::string bytes = text_of(message.bytes);
+    EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(reinterpret_cast<const char*>(&last), 4));
+    message = {};
+    EXPECT_TRUE(alive.expired());
+  }
+}
+
+TEST(ChunkWriter, RefersToRowsWherePaddingLiesBetweenThem) {
+  const auto plane = std::make_shared<Plane>(noise(PlaneKind::kDepth, 1920, 300));
+  ASSERT_FALSE(is_packed(*plane));
+  ChunkWriter writer;
   OutgoingMessage message;
-  ChunkWriter().write(*plane, full_coding(PlaneKind::kDepth), 0, 0, plane, message);
-  const float last = plane->channel(0).at(63, 7);
-  plane.reset();
-  ASSERT_FALSE(alive.expired());
-  const std::string bytes = text_of(message.bytes);
-  EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string(reinterpret_cast<const char*>(&last), 4));
-  message = {};
-  EXPECT_TRUE(alive.expired());
+  std::size_t offset = 0, rows = 0;
+  do {
+    offset = writer.write(*plane, full_coding(PlaneKind::kDepth), 0, offset, plane, message);
+    std::vector<grpc::Slice> slices;
+    ASSERT_TRUE(message.bytes.Dump(&slices).ok());
+    const auto* const begin = reinterpret_cast<const std::uint8_t*>(plane->words(0).row(0));
+    for (const grpc::Slice& slice : slices) {
+      if (slice.size() < 64) continue;  // the fields of the chunk, an end of a row
+      EXPECT_TRUE(slice.begin() >= begin && slice.end() <= begin + plane->bytes());
+      rows += slice.size() == 1920 * sizeof(float);
+    }
+  } while (offset != 0);
+  EXPECT_GE(rows, 296u) << "all but those that two chunks share";
 }
 
 }  // namespace
