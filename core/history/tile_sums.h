@@ -11,6 +11,7 @@ struct LightChangeRule {
   float tile_deviations = 5.0f;   ///< of a tile's mean difference, in its standard errors
   float frame_deviations = 3.0f;  ///< the same, where many tiles differ by that much:
   float frame_share = 1.0f;       ///< more of them than this, 0..1 (chance: 0.003); 1: never
+  float moving_deviations = 4.0f;  ///< for tile_deviations where something moves: a bias is likelier
   float least_share = 0.002f;     ///< of a tile's mean difference in its mean, below which it does
                                   ///< not show
 };
@@ -37,6 +38,14 @@ struct TileSums {
     for (const double h : value) sum += square_of(h / pixels);
     return sum;
   }
+  void add(const TileSums& other) {
+    pixels += other.pixels;
+    square += other.square;
+    for (int c = 0; c < 3; ++c) {
+      difference[c] += other.difference[c];
+      value[c] += other.value[c];
+    }
+  }
   /// Variance of mean d, summed over channels.
   double error2() const { return std::max(square / pixels - shift2(), 0.0) / pixels; }
 
@@ -49,6 +58,19 @@ struct TileSums {
     return shift > square_of(double{rule.frame_deviations}) * error ? TileFinding::kSuspect
                                                                     : TileFinding::kSame;
   }
+
+  /// The squared bias of h that |mean d|^2 shows, in variances of one pixel's d and at most
+  /// kMostBias; 0 unless mean d is `deviations` of its standard errors and shows beside mean h.
+  float bias(double deviations, double least_share) const {
+    if (!(pixels > 1)) return 0.0f;
+    const double shift = shift2(), error = error2();
+    if (!(shift > square_of(least_share) * level2())) return 0.0f;
+    if (!(shift > square_of(deviations) * error)) return 0.0f;
+    const double most = double{kMostBias} * error * pixels;
+    return shift - error < most ? static_cast<float>((shift - error) / (error * pixels))
+                                : kMostBias;
+  }
+  static constexpr float kMostBias = 100.0f;  ///< nothing is left of a history by then
 };
 
 /// How many tiles of an image are found to be what.

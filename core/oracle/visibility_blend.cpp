@@ -71,7 +71,7 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
   Candidate surface(noisy, sources.surface, before), shadow(noisy, sources.effect, before);
   Changes changes(now.width, now.height);
   if (rule.change.noticed)
-    changes = Changes(now, surface.value, surface.difference, surface.samples, rule.change);
+    changes = Changes(now, surface.value, surface.difference, surface.samples, rule.change, false);
   out.changed_share = changes.share();
   Image spread;
   for (Candidate* candidate : {&surface, &shadow}) {

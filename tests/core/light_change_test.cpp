@@ -42,7 +42,7 @@ struct Gathered {
       for (int c = 0; c < 3; ++c) differences[c].at(x, y) += by;
     });
   }
-  void measure() { change.measure(guides, {values, differences, 0, 3, 3}, rule); }
+  void measure() { change.measure(guides, {values, differences, 0, 0, 3, 3}, rule); }
   bool tile_marked(int column, int row) const {
     return change.changed(column * kTile, row * kTile);
   }
