@@ -24,7 +24,7 @@ void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
                           const LightChangeRule& rule) {
   clear();
   add_up(guides, gathered);
-  estimate_bias(double{rule.tile_deviations}, double{rule.least_share});
+  estimate_bias(rule, rule.tile_deviations);
   TileCounts counts;
   for (std::size_t tile = 0; tile < sums_.size(); ++tile) {
     found_[tile] = sums_[tile].verdict(rule);
@@ -45,7 +45,7 @@ void LightChange::measure_moving(const Guides& guides, const GatheredHistory& ga
                                  const LightChangeRule& rule) {
   clear();
   add_up(guides, gathered);
-  estimate_bias(double{rule.moving_deviations}, double{rule.least_share});
+  estimate_bias(rule, rule.moving_deviations);
 }
 
 void LightChange::add_up(const Guides& guides, const GatheredHistory& gathered) {
@@ -76,10 +76,11 @@ void LightChange::add_up_row(int row, const Guides& guides, const GatheredHistor
   }
 }
 
-void LightChange::estimate_bias(double deviations, double least_share) {
-  estimate_bias(1, deviations, least_share);
-  estimate_bias(kGroup, deviations, least_share);
-  estimate_bias(std::max(columns_, rows_), deviations, least_share);
+void LightChange::estimate_bias(const LightChangeRule& rule, float group_deviations) {
+  const double least_share = double{rule.least_share};
+  estimate_bias(1, double{rule.tile_deviations}, least_share);
+  estimate_bias(kGroup, double{group_deviations}, least_share);
+  estimate_bias(std::max(columns_, rows_), double{rule.frame_deviations}, least_share);
 }
 
 /// The same of squares of `size` tiles.

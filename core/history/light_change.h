@@ -11,7 +11,7 @@ namespace holdfast {
 /// Candidate values of a history, and their differences to the frame, as a blend has gathered them.
 struct GatheredHistory {
   const Channels<float>& values;
-  const Channels<float>& differences;  ///< value minus frame; 0 where there is no history
+  const Channels<float>& differences;         ///< value minus frame; 0 where there is no history
   int first_value = 0, first_difference = 0;  ///< channels of the candidate
   int channels = 1;
   int samples = 0;  ///< channel of `values`: 0 where there is no history
@@ -28,14 +28,16 @@ class LightChange {
   LightChange() = default;
   LightChange(int width, int height);
 
-  /// Where nothing moves: marks each tile that has changed, and those around it: with d the mean difference of a tile's
-  /// n pixels with history, v the variance of one (both summed over channels), h the mean value:
+  /// Where nothing moves: marks each tile that has changed, and those around it: with d the mean
+  /// difference of a tile's n pixels with history, v the variance of one (both summed over
+  /// channels), h the mean value:
   ///   |d|^2 > tile_deviations^2 v / n   and   |d| > least_share |h|
   /// Marks all tiles where more than frame_share of them, and more than three, differ by
-  /// frame_deviations instead. And estimates `bias`, with tile_deviations.
+  /// frame_deviations instead. And estimates `bias`, of groups with
+  /// tile_deviations.
   ///   reads guides, gathered | halo 0
   void measure(const Guides& guides, const GatheredHistory& gathered, const LightChangeRule& rule);
-  /// Where something moves: marks nothing, and estimates `bias` with moving_deviations.
+  /// Where something moves: marks nothing, and estimates `bias`, of groups with moving_deviations.
   ///   reads guides, gathered | halo 0
   void measure_moving(const Guides& guides, const GatheredHistory& gathered,
                       const LightChangeRule& rule);
@@ -60,7 +62,7 @@ class LightChange {
  private:
   void add_up(const Guides& guides, const GatheredHistory& gathered);
   void add_up_row(int row, const Guides& guides, const GatheredHistory& gathered);
-  void estimate_bias(double deviations, double least_share);
+  void estimate_bias(const LightChangeRule& rule, float group_deviations);
   void estimate_bias(int size, double deviations, double least_share);
   void mark_around();
 

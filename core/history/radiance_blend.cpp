@@ -63,7 +63,7 @@ struct RadianceBlend {
   /// In a scene at rest of the first candidate: the others lead nowhere else.
   void look_for_changes(const Guides& guides) const {
     for (int k = 0; k < candidates(); ++k) {
-      const GatheredHistory gathered{s.candidates, s.differences[k], kStep * k, 0, 3,
+      const GatheredHistory gathered{s.candidates,        s.differences[k], kStep * k, 0, 3,
                                      kStep * k + kSamples};
       if (!rule.change.noticed || (at_rest && k > 0))
         s.change[k].clear();

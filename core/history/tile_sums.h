@@ -7,13 +7,14 @@ namespace holdfast {
 
 /// When a tile counts as changed. Ours; tuned on scenes at rest with and without a light switched.
 struct LightChangeRule {
-  bool noticed = false;           ///< look for changes at all
-  float tile_deviations = 5.0f;   ///< of a tile's mean difference, in its standard errors
-  float frame_deviations = 3.0f;  ///< the same, where many tiles differ by that much:
-  float frame_share = 1.0f;       ///< more of them than this, 0..1 (chance: 0.003); 1: never
-  float moving_deviations = 4.0f;  ///< for tile_deviations where something moves: a bias is likelier
-  float least_share = 0.002f;     ///< of a tile's mean difference in its mean, below which it does
-                                  ///< not show
+  bool noticed = false;            ///< look for changes at all
+  float tile_deviations = 5.0f;    ///< of a tile's mean difference, in its standard errors
+  float frame_deviations = 3.0f;   ///< the same of the frame's, and where many tiles differ by that
+                                   ///< much:
+  float frame_share = 1.0f;        ///< more of them than this, 0..1 (chance: 0.003); 1: never
+  float moving_deviations = 5.0f;  ///< of the mean difference of a group of tiles where things move
+  float least_share = 0.002f;      ///< of a tile's mean difference in its mean, below which it does
+                                   ///< not show
 };
 
 /// What a tile's difference says of its light.

@@ -1,6 +1,7 @@
 #include "core/oracle/changes.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace holdfast::oracle {
 namespace {
@@ -55,8 +56,10 @@ Changes::Changes(int width, int height)
 Changes::Changes(const Surfaces& now, const Image& values, const Image& differences,
                  const Image& samples, const LightChangeRule& rule, bool moving)
     : Changes(now.width, now.height) {
-  const float deviations = moving ? rule.moving_deviations : rule.tile_deviations;
-  for (const int size : {kTile, kTile * LightChange::kGroup, std::max(now.width, now.height)})
+  const float of_group = moving ? rule.moving_deviations : rule.tile_deviations;
+  for (const auto& [size, deviations] : {std::pair(kTile, rule.tile_deviations),
+                                         {kTile * LightChange::kGroup, of_group},
+                                         {std::max(now.width, now.height), rule.frame_deviations}})
     for (int top = 0; top < now.height; top += size)
       for (int left = 0; left < now.width; left += size) {
         const Square sums(now, values, differences, samples, left, top, size);

@@ -137,9 +137,8 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
                                  changes[0].bias(x, y), x, y);
     if (count == 2) {
       const Lead other = lead_of(sources, substitutes, 1, x, y);
-      const Promise second =
-          promise_of(candidates[1], other.taps, before, rule, sudden, lasting,
-                     changes[1].bias(x, y), x, y);
+      const Promise second = promise_of(candidates[1], other.taps, before, rule, sudden, lasting,
+                                        changes[1].bias(x, y), x, y);
       if (second.samples > 0 && (!(promise.samples > 0) || second.error < promise.error)) {
         chosen = 1;
         lead = other;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/follow_block.h"
 #include "core/oracle/candidates.h"
 #include "core/oracle/changes.h"
 #include "core/oracle/filter_pass.h"
@@ -79,7 +80,9 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
     candidate->mean_difference = std::move(window.values);
     spread = std::move(window.spread);
     for_each_pixel(now.width, now.height, [&](int x, int y) {
-      if (changes.changed(x, y)) candidate->samples.at(x, y) = 0;
+      const bool appeared =
+          sources.effect != nullptr && !(sources.effect->sweep.at(x, y) < double{kAppearedSweep});
+      if (changes.changed(x, y) || appeared) candidate->samples.at(x, y) = 0;
     });
   }
   const double most = double{rule.most_samples};

@@ -27,6 +27,15 @@ TEST_P(Recipes, AgreeWithTheOracleAtSizesThatFillNoBlock) {
     compare(width, height, 3);
 }
 
+TEST_P(Recipes, AgreeWithTheOracleWhenAnObjectIsPlacedForTheFirstTime) {
+  OracleScene scene = oracle_scenes(64, 48, 4)[0];
+  for (int t = 0; t < 2; ++t) scene.frames[static_cast<std::size_t>(t)].objects.clear();
+  DenoiserConfig config = scene.config;
+  config.recipe = GetParam();
+  test::expect_within_budget(filter_frames(config, "balanced", scene.frames),
+                             filter_by_oracle(config, "balanced", scene.frames));
+}
+
 std::string name_of(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   for (char& c : name) c = c == '-' ? '_' : c;
