@@ -1,5 +1,7 @@
 // Whole frames of every recipe through the kernels, against the oracle.
 
+#include <vector>
+
 #include "tests/oracle/within_budget.h"
 
 namespace holdfast {
@@ -28,7 +30,8 @@ TEST_P(Recipes, AgreeWithTheOracleAtSizesThatFillNoBlock) {
 }
 
 TEST_P(Recipes, AgreeWithTheOracleWhenAnObjectIsPlacedForTheFirstTime) {
-  OracleScene scene = oracle_scenes(64, 48, 4)[0];
+  std::vector<OracleScene> scenes = oracle_scenes(64, 48, 4);
+  OracleScene& scene = scenes[0];
   for (int t = 0; t < 2; ++t) scene.frames[static_cast<std::size_t>(t)].objects.clear();
   DenoiserConfig config = scene.config;
   config.recipe = GetParam();
