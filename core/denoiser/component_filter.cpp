@@ -244,7 +244,7 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
           input.frames.now, s.noisy, sources, window,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
-      changed_share_ = s.radiance_blend.change.share();
+      changed_share_ = s.radiance_blend.change[0].share();
     }
   } else {
     AccumulationRule rule = recipe_.accumulation;

@@ -28,6 +28,7 @@ Recipe make_reliable() {
       reliable.indirect_blend.change.noticed = true;
   // Indirect light changes everywhere or nowhere, and too little to show in one tile.
   reliable.indirect_blend.change.frame_share = 0.02f;
+  reliable.indirect_blend.change.moving_deviations = 3.0f;
   return reliable;
 }
 

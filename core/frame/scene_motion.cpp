@@ -46,9 +46,10 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
   view_ = next;
   view_matrix_ = frame.camera.view_from_world;
   clip_matrix_ = frame.camera.clip_from_view;
-  const bool new_object = follow(object_tracks_, frame.objects, first);
-  const bool new_light = follow(light_tracks_, frame.lights, first);
-  appeared_ = new_object || new_light;
+  appeared_ids_ = follow(object_tracks_, frame.objects, first);
+  const bool new_light = !follow(light_tracks_, frame.lights, first).empty();
+  appeared_ = !appeared_ids_.empty() || new_light;
+  if (first) appeared_ids_.clear();  // before it nothing is known of anything
   has_past_ = true;
   ++frames_;
   forget_oldest();
@@ -62,6 +63,8 @@ void SceneMotion::advance(const Frame& frame, int width, int height,
     objects_.push_back(compose(track));
     geometry_at_rest_ = false;
   }
+  objects_.push_back(objects_[0]);  // what appears has been where it is
+  objects_.back().appeared = true;
 }
 
 /// Clients may name new objects for ever.
@@ -81,6 +84,7 @@ void SceneMotion::forget_oldest() {
 void SceneMotion::follow_halved(const SceneMotion& full) {
   light_tracks_ = full.light_tracks_;  // of objects only those that move now are asked for
   slot_ids_ = full.slot_ids_;
+  appeared_ids_ = full.appeared_ids_;
   objects_ = full.objects_;
   geometry_at_rest_ = full.geometry_at_rest_;
   appeared_ = full.appeared_;
@@ -106,8 +110,10 @@ bool SceneMotion::at_rest() const {
 
 int SceneMotion::slot_of(std::uint32_t object_id) const {
   const auto it = std::lower_bound(slot_ids_.begin(), slot_ids_.end(), object_id);
-  return it != slot_ids_.end() && *it == object_id ? static_cast<int>(it - slot_ids_.begin()) + 1
-                                                   : 0;
+  if (it != slot_ids_.end() && *it == object_id)
+    return static_cast<int>(it - slot_ids_.begin()) + 1;
+  return std::binary_search(appeared_ids_.begin(), appeared_ids_.end(), object_id) ? slot_count()
+                                                                                   : 0;
 }
 
 SceneMotion::LightMotion SceneMotion::light(std::uint32_t light_id) const {
@@ -119,13 +125,13 @@ SceneMotion::LightMotion SceneMotion::light(std::uint32_t light_id) const {
   return motion;
 }
 
-bool SceneMotion::follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved,
-                         bool first) {
-  bool appeared = false;
+std::vector<std::uint32_t> SceneMotion::follow(std::map<std::uint32_t, Track>& tracks,
+                                               const TransformTable& moved, bool first) {
+  std::vector<std::uint32_t> appeared;
   for (auto& [id, track] : tracks) track.before = track.now;
   for (const auto& [id, matrix] : moved) {
     const auto [it, is_new] = tracks.try_emplace(id, Track{matrix, matrix});
-    appeared |= is_new;
+    if (is_new) appeared.push_back(id);
     it->second.listed = frames_;
     if (is_new) continue;
     it->second.now = matrix;

@@ -20,7 +20,8 @@ struct ObjectMotion {
   glm::mat<4, 4, T> next_pixel{1};  ///< (x w, y w, depth, w) of the current frame from the
                                     ///< previous relative point
   bool at_rest = false;             ///< object and camera both stand still: motion is exactly 0
-  bool traceable = true;            ///< false for a singular transform: nothing corresponds
+  bool appeared = false;  ///< placed for the first time: nobody knows whether it was there
+  bool traceable = true;  ///< false for a singular transform: nothing corresponds
 };
 
 /// Follows cameras, objects and lights from frame to frame and answers where a point was before.
@@ -49,14 +50,17 @@ class SceneMotion {
   const ViewGeometry& view() const { return view_; }
   const ViewGeometry& previous_view() const { return previous_view_; }
 
-  /// Motion of the slot that `slot_of` names; slot 0 is the static world.
+  /// Motion of the slot that `slot_of` names; slot 0 is the static world. What has appeared shares
+  /// a slot behind the last of `slot_count`.
   const ObjectMotion<float>& object(int slot) const {
     return objects_[static_cast<std::size_t>(slot)];
   }
   int slot_of(std::uint32_t object_id) const;
   /// The object of a slot, which is not slot 0.
   std::uint32_t id_of(int slot) const { return slot_ids_[static_cast<std::size_t>(slot - 1)]; }
-  int slot_count() const { return static_cast<int>(objects_.size()); }
+  int slot_count() const { return static_cast<int>(slot_ids_.size()) + 1; }
+  /// Whether objects have been placed for the first time in this frame, which is not the first.
+  bool objects_appeared() const { return !appeared_ids_.empty(); }
   /// True when camera and all objects stand still.
   bool geometry_at_rest() const { return geometry_at_rest_; }
   /// True when the lights stand still, too, and nothing has been placed for the first time.
@@ -76,8 +80,9 @@ class SceneMotion {
     std::uint64_t listed = 0;  ///< frame that listed it last, counted by `frames_`
   };
   void forget_oldest();
-  /// Returns whether something was placed for the first time.
-  bool follow(std::map<std::uint32_t, Track>& tracks, const TransformTable& moved, bool first);
+  /// Returns what was placed for the first time, sorted.
+  std::vector<std::uint32_t> follow(std::map<std::uint32_t, Track>& tracks,
+                                    const TransformTable& moved, bool first);
   ObjectMotion<float> compose(const Track& track) const;
 
   std::map<std::uint32_t, Track> object_tracks_, light_tracks_;
@@ -85,7 +90,8 @@ class SceneMotion {
   glm::dmat4 view_matrix_{1}, clip_matrix_{1};
   std::uint64_t frames_ = 0;
   bool camera_at_rest_ = false, geometry_at_rest_ = false, has_past_ = false, appeared_ = false;
-  std::vector<std::uint32_t> slot_ids_;  ///< sorted; slot k + 1 belongs to slot_ids_[k]
+  std::vector<std::uint32_t> slot_ids_;      ///< sorted; slot k + 1 belongs to slot_ids_[k]
+  std::vector<std::uint32_t> appeared_ids_;  ///< sorted: objects
   std::vector<ObjectMotion<float>> objects_;
 };
 

@@ -116,7 +116,8 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
                                                    std::as_const(s.differences)[kShadow]};
   if (rule.change.noticed) {  // by the surface's: nothing moves
-    s.change.measure(guides, {s.candidates, s.differences, kSurface, 1, kSamples + kSurface},
+    s.change.measure(guides,
+                     {s.candidates, s.differences, kSurface, kSurface, 1, kSamples + kSurface},
                      rule.change);
     drop_changed(s);
   } else {

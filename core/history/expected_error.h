@@ -55,7 +55,8 @@ struct BlendScratch {
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k),  1/N_out = 1/(1+k)^2 +
 /// (k/(1+k))^2/n' with n' = max(n, k). Bias counts `spatial_samples` times, because the spatial
 /// filter that follows averages noise away, and bias not. Without a candidate, out = noisy and N =
-/// 1, so that a history that fits nowhere leaves exactly the spatial filter.
+/// 1, so that a history that fits nowhere leaves exactly the spatial filter; nor is there one in
+/// the shadow of an object that has just appeared.
 /// With a `footprint` (see window_means) the window follows it; null: a square.
 ///   reads noisy, `before`, `sample_variance` | writes `now`, `debug` (may be null) | halo of the
 ///   window

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/kernels/variants.h"
+#include "core/motion/follow_block.h"
 
 namespace holdfast {
 namespace {
@@ -33,11 +34,13 @@ HOLDFAST_INLINE float threshold_of(float move, const ExpectedErrorRule& rule) {
 }
 
 /// The threshold of each pixel, by the motion of the shadow over its surface in widths of the
-/// penumbra and a pixel: what a visibility may change by in a frame.
-HOLDFAST_INLINE void find_thresholds(const VisibilityBlend& a, float* threshold) {
+/// penumbra and a pixel: what a visibility may change by in a frame. `past` is 0 where there was
+/// another visibility, for what blocks has just appeared; else 1.
+HOLDFAST_INLINE void find_thresholds(const VisibilityBlend& a, float* threshold, float* past) {
   const ExpectedErrorRule rule = a.rule;
   if (a.sweep == nullptr) {
     for (int i = 0; i < a.count; ++i) threshold[i] = rule.noise_threshold;
+    for (int i = 0; i < a.count; ++i) past[i] = 1.0f;
     return;
   }
   const float *mx = a.shadow_motion[0], *my = a.shadow_motion[1];
@@ -48,6 +51,7 @@ HOLDFAST_INLINE void find_thresholds(const VisibilityBlend& a, float* threshold)
     const float slide_px = abs_of(mx[i] - sx[i]) + abs_of(my[i] - sy[i]);
     const float both = sweep[i] * slide_px / max_of(sweep[i] + slide_px, 1e-9f);
     threshold[i] = threshold_of(samples[i] > 0.0f ? both : sweep[i], rule);
+    past[i] = sweep[i] < kAppearedSweep ? 1.0f : 0.0f;
   }
 }
 
@@ -68,8 +72,8 @@ HOLDFAST_INLINE Estimate estimate(float samples, float difference, float varianc
 }
 
 HOLDFAST_INLINE void blend_body(const VisibilityBlend& a) {
-  float threshold[kTapBlock];
-  find_thresholds(a, threshold);
+  float threshold[kTapBlock], past[kTapBlock];
+  find_thresholds(a, threshold, past);
   const float spatial_samples = a.rule.spatial_samples, advantage = a.rule.surface_advantage;
   const float most = a.rule.most_samples;
   const float *noisy = a.noisy, *variance = a.variance, *spread = a.spread;
@@ -79,7 +83,7 @@ HOLDFAST_INLINE void blend_body(const VisibilityBlend& a) {
         *weight = a.weight;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
-    const float n0 = samples_0[i], n1 = samples_1[i], v = variance[i];
+    const float n0 = past[i] * samples_0[i], n1 = past[i] * samples_1[i], v = variance[i];
     const float d0 = bias_0[i], d1 = bias_1[i], h0 = value_0[i], h1 = value_1[i];
     const Estimate surface = estimate(n0, d0, v, spread[i], threshold[i], spatial_samples);
     const Estimate shadow = estimate(n1, d1, v, spread[i], threshold[i], spatial_samples);

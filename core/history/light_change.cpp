@@ -9,20 +9,27 @@ namespace holdfast {
 LightChange::LightChange(int width, int height)
     : columns_((width + kTile - 1) / kTile),
       rows_((height + kTile - 1) / kTile),
-      found_(static_cast<std::size_t>(columns_ * rows_)),
+      sums_(static_cast<std::size_t>(columns_ * rows_)),
+      bias_(sums_.size()),
+      found_(sums_.size()),
       marked_(found_.size()) {}
 
 void LightChange::clear() {
   std::fill(marked_.begin(), marked_.end(), std::uint8_t{0});
+  std::fill(bias_.begin(), bias_.end(), 0.0f);
   share_ = 0;
 }
 
 void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
                           const LightChangeRule& rule) {
-  for_each_row(rows_, [&](int row) { measure_tiles(row, guides, gathered, rule); });
-  TileCounts counts;
-  for (const TileFinding found : found_) counts.add(found);
   clear();
+  add_up(guides, gathered);
+  estimate_bias(rule, rule.tile_deviations);
+  TileCounts counts;
+  for (std::size_t tile = 0; tile < sums_.size(); ++tile) {
+    found_[tile] = sums_[tile].verdict(rule);
+    counts.add(found_[tile]);
+  }
   if (counts.everywhere(rule)) {
     share_ = 1;
     std::fill(marked_.begin(), marked_.end(), std::uint8_t{1});
@@ -34,8 +41,18 @@ void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
   }
 }
 
-void LightChange::measure_tiles(int row, const Guides& guides, const GatheredHistory& gathered,
-                                const LightChangeRule& rule) {
+void LightChange::measure_moving(const Guides& guides, const GatheredHistory& gathered,
+                                 const LightChangeRule& rule) {
+  clear();
+  add_up(guides, gathered);
+  estimate_bias(rule, rule.moving_deviations);
+}
+
+void LightChange::add_up(const Guides& guides, const GatheredHistory& gathered) {
+  for_each_row(rows_, [&](int row) { add_up_row(row, guides, gathered); });
+}
+
+void LightChange::add_up_row(int row, const Guides& guides, const GatheredHistory& gathered) {
   const int y_end = std::min((row + 1) * kTile, guides.view.height);
   for (int column = 0; column < columns_; ++column) {
     TileSums sums;
@@ -44,8 +61,8 @@ void LightChange::measure_tiles(int row, const Guides& guides, const GatheredHis
       const float* depth = guides.depth().row(y);
       const float* samples = gathered.values[gathered.samples].row(y);
       for (int c = 0; c < gathered.channels; ++c) {
-        const float* value = gathered.values[gathered.first + c].row(y);
-        const float* difference = gathered.differences[gathered.first + c].row(y);
+        const float* value = gathered.values[gathered.first_value + c].row(y);
+        const float* difference = gathered.differences[gathered.first_difference + c].row(y);
         for (int x = column * kTile; x < x_end; ++x) {
           if (!(depth[x] > 0.0f) || !(samples[x] > 0.0f)) continue;
           sums.pixels += c == 0 ? 1 : 0;
@@ -55,8 +72,34 @@ void LightChange::measure_tiles(int row, const Guides& guides, const GatheredHis
         }
       }
     }
-    found_[static_cast<std::size_t>(row * columns_ + column)] = sums.verdict(rule);
+    sums_[static_cast<std::size_t>(row * columns_ + column)] = sums;
   }
+}
+
+void LightChange::estimate_bias(const LightChangeRule& rule, float group_deviations) {
+  const double least_share = double{rule.least_share};
+  estimate_bias(1, double{rule.tile_deviations}, least_share);
+  estimate_bias(kGroup, double{group_deviations}, least_share);
+  estimate_bias(std::max(columns_, rows_), double{rule.frame_deviations}, least_share);
+}
+
+/// The same of squares of `size` tiles.
+void LightChange::estimate_bias(int size, double deviations, double least_share) {
+  for (int top = 0; top < rows_; top += size)
+    for (int left = 0; left < columns_; left += size) {
+      const int bottom = std::min(top + size, rows_), right = std::min(left + size, columns_);
+      TileSums sums;
+      for (int row = top; row < bottom; ++row)
+        for (int column = left; column < right; ++column)
+          sums.add(sums_[static_cast<std::size_t>(row * columns_ + column)]);
+      const float bias = sums.bias(deviations, least_share);
+      if (!(bias > 0.0f)) continue;
+      for (int row = top; row < bottom; ++row)
+        for (int column = left; column < right; ++column) {
+          float& known = bias_[static_cast<std::size_t>(row * columns_ + column)];
+          known = std::max(known, bias);
+        }
+    }
 }
 
 int LightChange::run(int x, int y, int count) const {

@@ -75,22 +75,33 @@ struct RadianceBlend {
                        1 + rule.window_step, 0.0f, true);
   }
 
-  /// Of the first candidate, which in a scene at rest leads nowhere else.
+  /// In a scene at rest of the first candidate: the others lead nowhere else.
   void look_for_changes(const Guides& guides) const {
-    if (at_rest && rule.change.noticed)
-      s.change.measure(guides, {s.candidates, s.differences[0], 0, 3, kSamples}, rule.change);
-    else
-      s.change.clear();
+    for (int k = 0; k < candidates(); ++k) {
+      const GatheredHistory gathered{s.candidates,        s.differences[k], kStep * k, 0, 3,
+                                     kStep * k + kSamples};
+      if (!rule.change.noticed || (at_rest && k > 0))
+        s.change[k].clear();
+      else if (at_rest)
+        s.change[k].measure(guides, gathered, rule.change);
+      else
+        s.change[k].measure_moving(guides, gathered, rule.change);
+    }
   }
 
   void blend_row(int y, const float* spread) const {
     Taps own[kTapBlock];
     float chosen[kTapBlock], samples[kTapBlock], weight[kTapBlock];
+    float expected[RadianceBlendScratch::kMostCandidates][kTapBlock];
     for (int x = 0, count = 0; x < noisy.width(); x += count) {
-      count = s.change.run(x, y, std::min(kTapBlock, noisy.width() - x));
-      const bool rests = at_rest && !s.change.changed(x, y);
+      count = s.change[0].run(x, y, std::min(kTapBlock, noisy.width() - x));
+      const bool rests = at_rest && !s.change[0].changed(x, y);
       const Taps* first = taps_of(0, x, y, count, own);
       const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
+      for (int k = 0; k < candidates(); ++k) {
+        const LightChange& change = s.change[at_rest ? 0 : k];
+        for (int i = 0; i < count; ++i) expected[k][i] = change.bias(x + i, y);
+      }
       blend_candidates({{first, second},
                         second != nullptr && any(second, count) ? 2 : 1,
                         x,
@@ -100,6 +111,7 @@ struct RadianceBlend {
                         before,
                         s,
                         spread + x,
+                        {expected[0], expected[1]},
                         rule,
                         rests ? rule.rest_sudden_threshold : rule.sudden_threshold,
                         rests ? rule.rest_threshold : rule.noise_threshold,

@@ -20,7 +20,8 @@ struct RadianceBlendRule {
   float spatial_samples =
       40.0f;                   ///< samples that the spatial filter adds: noise averages, bias not
   float most_samples = 64.0f;  ///< cap of the samples credited to history
-  LightChangeRule change;      ///< where that is found, a scene at rest counts as if it moved
+  LightChangeRule change;      ///< where that is found, a scene at rest counts as if it moved, and
+                               ///< history is expected to be biased
 };
 
 /// Scratch of `blend_radiance`: for each candidate, R, G, B and samples; differences to the frame
@@ -28,17 +29,18 @@ struct RadianceBlendRule {
 struct RadianceBlendScratch {
   static constexpr int kPerCandidate = 4, kMostCandidates = 2;
   Channels<float> candidates, differences[kMostCandidates], means;
-  ActivityMap activity;  ///< of the differences
-  LightChange change;
+  ActivityMap activity;                 ///< of the differences
+  LightChange change[kMostCandidates];  ///< by candidate; at rest the first one's is that of all
 
   RadianceBlendScratch() = default;
   RadianceBlendScratch(int width, int height, int most_candidates, Memory memory = Memory::kOwned)
       : candidates(width, height, kPerCandidate * most_candidates, memory),
         means(width, height, kPerCandidate * most_candidates, memory),
-        activity(width, height),
-        change(width, height) {
-    for (int k = 0; k < most_candidates; ++k)
+        activity(width, height) {
+    for (int k = 0; k < most_candidates; ++k) {
       differences[k] = Channels<float>(width, height, kPerCandidate, memory);
+      change[k] = LightChange(width, height);
+    }
   }
   static void each_image(auto& s, auto&& visit) {
     for (auto* images : {&s.candidates, &s.differences[0], &s.differences[1], &s.means})
@@ -53,7 +55,8 @@ struct RadianceBlendScratch {
 /// that of one sample:
 ///   u   = v' / m                                  variance of d
 ///   r   = recursive mean of d along the history, w its variance
-///   b^2 = the larger of max(0, |d|^2 - sudden_threshold u) and max(0, |r|^2 - noise_threshold w)
+///   b^2 = the largest of max(0, |d|^2 - sudden_threshold u), max(0, |r|^2 - noise_threshold w)
+///         and c v', c what LightChange expects of the history there
 ///   s   = b^2 / (b^2 + its variance)              share worth subtracting: h' = h - s d (or r)
 ///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 variance)
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k), N_out = 1 + k: samples count by the

@@ -64,7 +64,7 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
   const float *h0 = s.candidates[kStep * k].row(a.y) + a.x,
               *h1 = s.candidates[kStep * k + 1].row(a.y) + a.x,
               *h2 = s.candidates[kStep * k + 2].row(a.y) + a.x;
-  const float* spread = a.spread;
+  const float *spread = a.spread, *expected = a.expected[k];
   const float beta = a.rule.residual_beta, spatial_samples = a.rule.spatial_samples;
   const float sudden_threshold = a.sudden_threshold, lasting_threshold = a.lasting_threshold;
 #pragma GCC ivdep
@@ -85,7 +85,8 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
     const float r1 = (1.0f - b) * before[1][i] + b * d1[i];
     const float r2 = (1.0f - b) * before[2][i] + b * d2[i];
     const float joined = (1.0f - b) * (1.0f - b) * w + b * b * u;
-    const float sudden = max_of(d_norm2 - sudden_threshold * u, 0.0f);
+    const float sudden =
+        max_of(max_of(d_norm2 - sudden_threshold * u, 0.0f), expected[i] * of_difference);
     const float lasting = max_of(norm2(r0, r1, r2) - lasting_threshold * joined, 0.0f);
     const float bias2 = max_of(sudden, lasting), noise = sudden > lasting ? u : joined;
     const float share = bias2 / (bias2 + noise);

@@ -26,6 +26,7 @@ struct RadianceBlendBlock {
   const ComponentHistory& before;
   const RadianceBlendScratch& scratch;
   const float* spread;  ///< 1 / samples of the windows, from x on
+  const float* expected[RadianceBlendScratch::kMostCandidates];  ///< LightChange::bias, from x on
   const RadianceBlendRule& rule;
   float sudden_threshold, lasting_threshold;
   ComponentHistory& now;

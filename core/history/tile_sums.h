@@ -7,12 +7,14 @@ namespace holdfast {
 
 /// When a tile counts as changed. Ours; tuned on scenes at rest with and without a light switched.
 struct LightChangeRule {
-  bool noticed = false;           ///< look for changes at all
-  float tile_deviations = 5.0f;   ///< of a tile's mean difference, in its standard errors
-  float frame_deviations = 3.0f;  ///< the same, where many tiles differ by that much:
-  float frame_share = 1.0f;       ///< more of them than this, 0..1 (chance: 0.003); 1: never
-  float least_share = 0.002f;     ///< of a tile's mean difference in its mean, below which it does
-                                  ///< not show
+  bool noticed = false;            ///< look for changes at all
+  float tile_deviations = 5.0f;    ///< of a tile's mean difference, in its standard errors
+  float frame_deviations = 3.0f;   ///< the same of the frame's, and where many tiles differ by that
+                                   ///< much:
+  float frame_share = 1.0f;        ///< more of them than this, 0..1 (chance: 0.003); 1: never
+  float moving_deviations = 5.0f;  ///< of the mean difference of a group of tiles where things move
+  float least_share = 0.002f;      ///< of a tile's mean difference in its mean, below which it does
+                                   ///< not show
 };
 
 /// What a tile's difference says of its light.
@@ -37,6 +39,14 @@ struct TileSums {
     for (const double h : value) sum += square_of(h / pixels);
     return sum;
   }
+  void add(const TileSums& other) {
+    pixels += other.pixels;
+    square += other.square;
+    for (int c = 0; c < 3; ++c) {
+      difference[c] += other.difference[c];
+      value[c] += other.value[c];
+    }
+  }
   /// Variance of mean d, summed over channels.
   double error2() const { return std::max(square / pixels - shift2(), 0.0) / pixels; }
 
@@ -49,6 +59,19 @@ struct TileSums {
     return shift > square_of(double{rule.frame_deviations}) * error ? TileFinding::kSuspect
                                                                     : TileFinding::kSame;
   }
+
+  /// The squared bias of h that |mean d|^2 shows, in variances of one pixel's d and at most
+  /// kMostBias; 0 unless mean d is `deviations` of its standard errors and shows beside mean h.
+  float bias(double deviations, double least_share) const {
+    if (!(pixels > 1)) return 0.0f;
+    const double shift = shift2(), error = error2();
+    if (!(shift > square_of(least_share) * level2())) return 0.0f;
+    if (!(shift > square_of(deviations) * error)) return 0.0f;
+    const double most = double{kMostBias} * error * pixels;
+    return shift - error < most ? static_cast<float>((shift - error) / (error * pixels))
+                                : kMostBias;
+  }
+  static constexpr float kMostBias = 100.0f;  ///< nothing is left of a history by then
 };
 
 /// How many tiles of an image are found to be what.

@@ -11,6 +11,8 @@ namespace holdfast {
 inline constexpr int kFollowBlock = 64;  ///< pixels
 /// Sweep of a blocker of which nobody knows where it was: nothing that was seen before is expected.
 inline constexpr float kUnknownSweep = 1e6f;
+/// Of one that has appeared: what was seen before it is known to be wrong.
+inline constexpr float kAppearedSweep = 1e12f;
 
 /// The pixels of a block: where they lie, and their surfaces.
 struct BlockPixels {

@@ -157,6 +157,7 @@ void ShadowTracer::follow_block(const BlockPixels& pixels, int x, int y, const f
                            centre.w,
                            previous_half_axes_,
                            out});
+  if (occluder.appeared) std::fill_n(out.sweep, pixels.count, kAppearedSweep);
 }
 
 int ShadowTracer::own_blocker_slot(int x, int y) const {
@@ -172,7 +173,7 @@ PixelPoint<float> ShadowTracer::follow_borrowed(int x, int y, float ratio) const
 }
 
 int ShadowTracer::nearest_blocker_slot(int x, int y) const {
-  if (!id_ || scene_.slot_count() == 1) return 0;
+  if (!id_ || (scene_.slot_count() == 1 && !scene_.objects_appeared())) return 0;
   if (blocked(x, y)) return own_blocker_slot(x, y);
   const ChannelView<const float> depth = now_.depth();
   const int width = depth.width, height = depth.height;
@@ -189,6 +190,7 @@ int ShadowTracer::nearest_blocker_slot(int x, int y) const {
 
 bool ShadowTracer::moving_blockers_near(int x, int y, int count) const {
   if (!id_) return false;
+  if (scene_.objects_appeared()) return true;  // for one frame, rather than look for each of them
   const int first_x = std::max(x - kBlockerSearchRadius, 0);
   const int last_x = std::min(x + count + kBlockerSearchRadius, id_.width);
   const int first_y = std::max(y - kBlockerSearchRadius, 0);

@@ -46,7 +46,7 @@ class ShadowTracer {
   /// The object that blocks the sample of (x, y), and the object of the nearest blocked sample.
   int own_blocker_slot(int x, int y) const;
   int nearest_blocker_slot(int x, int y) const;
-  /// False if all of `count` pixels from (x, y) on have slot 0 as their nearest blocker's.
+  /// False only if all of `count` pixels from (x, y) on have slot 0 as their nearest blocker's.
   bool moving_blockers_near(int x, int y, int count) const;
 
  private:

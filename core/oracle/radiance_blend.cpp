@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/oracle/candidates.h"
 #include "core/oracle/changes.h"
@@ -68,7 +69,7 @@ struct Promise {
 
 Promise promise_of(const Candidate& candidate, const Taps& taps, const History& before,
                    const RadianceBlendRule& rule, double sudden_threshold, double lasting_threshold,
-                   int x, int y) {
+                   double expected, int x, int y) {
   Promise out;
   out.samples = candidate.samples.at(x, y);
   const double n = out.samples > 0 ? out.samples : 1;
@@ -87,7 +88,8 @@ Promise promise_of(const Candidate& candidate, const Taps& taps, const History& 
   const double beta = w > 0 ? std::max(double{rule.residual_beta}, w / (w + u)) : 1.0;
   out.residual = (1 - beta) * r_before + beta * d;
   out.residual_variance = square(1 - beta) * w + square(beta) * u;
-  const double sudden = std::max(0.0, glm::dot(d, d) - sudden_threshold * u);
+  const double sudden =
+      std::max({0.0, glm::dot(d, d) - sudden_threshold * u, expected * of_difference});
   const double lasting = std::max(
       0.0, glm::dot(out.residual, out.residual) - lasting_threshold * out.residual_variance);
   const bool is_sudden = sudden > lasting;
@@ -115,22 +117,28 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
     candidates[k] = read_candidate(noisy, sources, substitutes, k, before);
     candidates[k].means = window_means(now, candidates[k].difference, rule.window_step, footprint);
   }
-  Changes changes(now.width, now.height);
-  if (at_rest && rule.change.noticed)
-    changes = Changes(now, candidates[0].value, candidates[0].difference, candidates[0].samples,
-                      rule.change);
-  out.changed_share = changes.share();
+  std::vector<Changes> changes;  // by candidate; at rest the first one's is that of all
+  for (int k = 0; k < count; ++k)
+    if (!rule.change.noticed)
+      changes.emplace_back(now.width, now.height);
+    else if (at_rest && k > 0)
+      changes.push_back(changes[0]);
+    else
+      changes.emplace_back(now, candidates[k].value, candidates[k].difference,
+                           candidates[k].samples, rule.change, !at_rest);
+  out.changed_share = changes[0].share();
   for_each_pixel(now.width, now.height, [&](int x, int y) {
-    const bool rests = at_rest && !changes.changed(x, y);
+    const bool rests = at_rest && !changes[0].changed(x, y);
     const double sudden = double{rests ? rule.rest_sudden_threshold : rule.sudden_threshold};
     const double lasting = double{rests ? rule.rest_threshold : rule.noise_threshold};
     int chosen = 0;
     Lead lead = lead_of(sources, substitutes, 0, x, y);
-    Promise promise = promise_of(candidates[0], lead.taps, before, rule, sudden, lasting, x, y);
+    Promise promise = promise_of(candidates[0], lead.taps, before, rule, sudden, lasting,
+                                 changes[0].bias(x, y), x, y);
     if (count == 2) {
       const Lead other = lead_of(sources, substitutes, 1, x, y);
-      const Promise second =
-          promise_of(candidates[1], other.taps, before, rule, sudden, lasting, x, y);
+      const Promise second = promise_of(candidates[1], other.taps, before, rule, sudden, lasting,
+                                        changes[1].bias(x, y), x, y);
       if (second.samples > 0 && (!(promise.samples > 0) || second.error < promise.error)) {
         chosen = 1;
         lead = other;

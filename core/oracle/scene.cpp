@@ -21,19 +21,27 @@ void Scene::advance(const Frame& frame, int width, int height) {
   has_past_ = true;
   static_ = motion_of(Track{});
   moving_.clear();
-  for (const auto& [id, track] : objects_)
-    if (track.now != track.before) moving_[id] = motion_of(track);
+  geometry_still_ = true;
+  for (const auto& [id, track] : objects_) {
+    const bool moves = track.now != track.before;
+    geometry_still_ = geometry_still_ && !moves;
+    if (moves || track.appeared) moving_[id] = motion_of(track);
+  }
 }
 
 /// What appears has been where it is. Returns whether something did.
 bool Scene::follow(Tracks& tracks, const TransformTable& moved, bool first) {
   bool appeared = false;
-  for (auto& [id, track] : tracks) track.before = track.now;
+  for (auto& [id, track] : tracks) {
+    track.before = track.now;
+    track.appeared = false;
+  }
   for (const auto& [id, matrix] : moved) {
     const bool is_new = !tracks.contains(id);
     Track& track = tracks[id];
     track.now = matrix;
     if (is_new || first) track.before = matrix;
+    track.appeared = is_new && !first;
     appeared |= is_new;
   }
   return appeared;
@@ -41,6 +49,7 @@ bool Scene::follow(Tracks& tracks, const TransformTable& moved, bool first) {
 
 Motion Scene::motion_of(const Track& track) const {
   Motion motion;
+  motion.appeared = track.appeared;
   motion.origin = view_.origin;
   motion.previous_origin = previous_view_.origin;
   const double volume = glm::determinant(glm::dmat3(track.now));

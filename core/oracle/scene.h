@@ -17,6 +17,7 @@ struct Motion {
   glm::dmat3 normal{1};                                   ///< previous from current normals
   glm::dvec3 origin{0}, previous_origin{0};               ///< of the cameras, in the world
   bool at_rest = false;   ///< object and camera both stand still: motion is exactly 0
+  bool appeared = false;  ///< in the current frame: nobody knows whether it was there
   bool traceable = true;  ///< false for a singular transform: nothing corresponds
 
   glm::dvec3 point_then(const glm::dvec3& now) const {
@@ -50,13 +51,14 @@ class Scene {
   const Motion& motion(std::uint32_t object_id) const;
   LightPlaces light(std::uint32_t light_id) const;
   /// True when camera and all objects stand still.
-  bool geometry_at_rest() const { return moving_.empty() && static_.at_rest; }
+  bool geometry_at_rest() const { return geometry_still_ && static_.at_rest; }
   /// True when the lights stand still, too, and nothing has been placed for the first time.
   bool at_rest() const;
 
  private:
   struct Track {
     glm::dmat4 now{1}, before{1};
+    bool appeared = false;
   };
   using Tracks = std::map<std::uint32_t, Track>;
   bool follow(Tracks& tracks, const TransformTable& moved, bool first);
@@ -66,8 +68,9 @@ class Scene {
   Camera camera_;
   ViewGeometry view_, previous_view_;
   bool has_past_ = false, camera_at_rest_ = false, appeared_ = false;
+  bool geometry_still_ = true;  ///< no object moves
   Motion static_;
-  std::map<std::uint32_t, Motion> moving_;
+  std::map<std::uint32_t, Motion> moving_;  ///< or new
 };
 
 }  // namespace holdfast::oracle

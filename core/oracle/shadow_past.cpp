@@ -1,12 +1,14 @@
 #include <cmath>
 
 #include "core/motion/effect_field.h"
+#include "core/motion/follow_block.h"
 #include "core/motion/shadow_motion.h"
 #include "core/oracle/shadows.h"
 
 namespace holdfast::oracle {
 namespace {
 
+constexpr double kAppeared = double{kAppearedSweep};
 constexpr double kNoBlocker = 1e6;    // sweep where nobody knows a blocker, or where it was
 constexpr double kLeastValid = 1e-3;  // share of blocked samples nearby that one is borrowed from
 constexpr int kSearchRadius = 3;      // px
@@ -62,7 +64,7 @@ void follow(const FrameView& frame, const ShadowInput& input, bool paper, const 
   const ShadowSample<double> sample{receiver.point, receiver.normal, occluder.point_then(blocker),
                                     input.places.then * local};
   const glm::dmat3 half_axes = glm::dmat3(input.places.then) * light_half_axes(input.light);
-  out.sweep.at(x, y) = shadow_sweep(sample, what.ratio, half_axes);
+  out.sweep.at(x, y) = occluder.appeared ? kAppeared : shadow_sweep(sample, what.ratio, half_axes);
   glm::dvec3 hit;
   if (!shadow_previous_point(sample, hit)) return;
   const auto then = project(frame.scene.previous_view().pixel_from_relative, hit);

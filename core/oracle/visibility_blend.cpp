@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/follow_block.h"
 #include "core/oracle/candidates.h"
 #include "core/oracle/changes.h"
 #include "core/oracle/filter_pass.h"
@@ -71,7 +72,7 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
   Candidate surface(noisy, sources.surface, before), shadow(noisy, sources.effect, before);
   Changes changes(now.width, now.height);
   if (rule.change.noticed)
-    changes = Changes(now, surface.value, surface.difference, surface.samples, rule.change);
+    changes = Changes(now, surface.value, surface.difference, surface.samples, rule.change, false);
   out.changed_share = changes.share();
   Image spread;
   for (Candidate* candidate : {&surface, &shadow}) {
@@ -79,7 +80,9 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
     candidate->mean_difference = std::move(window.values);
     spread = std::move(window.spread);
     for_each_pixel(now.width, now.height, [&](int x, int y) {
-      if (changes.changed(x, y)) candidate->samples.at(x, y) = 0;
+      const bool appeared =
+          sources.effect != nullptr && !(sources.effect->sweep.at(x, y) < double{kAppearedSweep});
+      if (changes.changed(x, y) || appeared) candidate->samples.at(x, y) = 0;
     });
   }
   const double most = double{rule.most_samples};
@@ -95,7 +98,10 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
         (!has_surface || of_shadow.error < double{rule.surface_advantage} * of_surface.error);
     out.now.signal.at(x, y) = noisy.at(x, y);
     out.now.samples.at(x, y) = 1;
-    if (!has_surface && !has_shadow) return;
+    if (!has_surface && !has_shadow) {  // dropped, but found
+      if (sources.surface->at(x, y).any()) out.record(x, y, *sources.surface, 0, 0);
+      return;
+    }
     const Candidate& chosen = by_shadow ? shadow : surface;
     const Promise promise = by_shadow ? of_shadow : of_surface;
     const double h = chosen.value.at(x, y), n = chosen.samples.at(x, y);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/motion/follow_block.h"
 #include "tests/core/history_world.h"
 
 namespace holdfast {
@@ -240,6 +241,28 @@ TEST(ExpectedError, TheMoreOfItsPenumbraAShadowMovesTheLessItKeeps) {
   EXPECT_LT(trust(20, 10, true), 0.85f);
   EXPECT_GT(trust(20, 0.002f, true), 0.95f);
   EXPECT_LT(trust(0, 1, false), 0.85f);
+}
+
+// The frame and its history agree, so that nothing else would turn the history down.
+TEST(ExpectedError, InTheShadowOfWhatHasAppearedOnlyTheFrameCounts) {
+  Blend b;
+  test::fill(b.noisy[0], 0.5f);
+  test::fill(b.before.data[0], 0.51f);
+  test::fill(b.before.samples(), 64.0f);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      b.follow_shadow(x, y, x, y);
+      b.shadow.motion[kMotionSweep].at(x, y) = x < kWidth / 2 ? kAppearedSweep : 0.0f;
+    }
+  b.run(b.by_effect());
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const bool appeared = x < kWidth / 2;
+      ASSERT_EQ(b.now.samples().at(x, y) == 1.0f, appeared) << x << ", " << y;
+      if (appeared) {
+        ASSERT_EQ(b.now.data[0].at(x, y), 0.5f);
+      }
+    }
 }
 
 }  // namespace

@@ -42,7 +42,13 @@ struct Gathered {
       for (int c = 0; c < 3; ++c) differences[c].at(x, y) += by;
     });
   }
-  void measure() { change.measure(guides, {values, differences, 0, 3, 3}, rule); }
+  void shift(int columns, float by) {
+    each([&](int x, int y) {
+      for (int c = 0; c < 3; ++c) differences[c].at(x, y) += x < columns ? by : 0.0f;
+    });
+  }
+  void measure_moving() { change.measure_moving(guides, {values, differences, 0, 0, 3, 3}, rule); }
+  void measure() { change.measure(guides, {values, differences, 0, 0, 3, 3}, rule); }
   bool tile_marked(int column, int row) const {
     return change.changed(column * kTile, row * kTile);
   }
@@ -54,25 +60,34 @@ struct Gathered {
   }
 };
 
-/// The tile's own verdict by the formula, in two passes over a list of its pixels.
-bool differs(const Gathered& g, int column, int row, double deviations) {
+/// The squared bias that a square of tiles shows by the formula, in variances of a difference: in
+/// two passes over a list of its pixels.
+double bias_of(const Gathered& g, int column, int row, int size, double deviations) {
   std::vector<glm::dvec3> d, h;
-  for (int y = row * kTile; y < std::min(kHeight, (row + 1) * kTile); ++y)
-    for (int x = column * kTile; x < std::min(kWidth, (column + 1) * kTile); ++x) {
+  for (int y = row * kTile; y < std::min(kHeight, (row + size) * kTile); ++y)
+    for (int x = column * kTile; x < std::min(kWidth, (column + size) * kTile); ++x) {
       if (!(g.guides.depth().at(x, y) > 0.0f) || !(g.values[3].at(x, y) > 0.0f)) continue;
       d.emplace_back(g.differences[0].at(x, y), g.differences[1].at(x, y),
                      g.differences[2].at(x, y));
       h.emplace_back(g.values[0].at(x, y), g.values[1].at(x, y), g.values[2].at(x, y));
     }
-  if (d.size() < 2) return false;
+  if (d.size() < 2) return 0;
   const auto n = static_cast<double>(d.size());
   glm::dvec3 mean(0), level(0);
   for (const glm::dvec3& v : d) mean += v / n;
   for (const glm::dvec3& v : h) level += v / n;
   double variance = 0;
   for (const glm::dvec3& v : d) variance += glm::dot(v - mean, v - mean) / n;
-  return glm::dot(mean, mean) > deviations * deviations * variance / n &&
-         glm::length(mean) > double{g.rule.least_share} * glm::length(level);
+  const double shift = glm::dot(mean, mean), error = variance / n;
+  return shift > deviations * deviations * error &&
+                 glm::length(mean) > double{g.rule.least_share} * glm::length(level)
+             ? (shift - error) / variance
+             : 0;
+}
+
+/// The tile's own verdict.
+bool differs(const Gathered& g, int column, int row, double deviations) {
+  return bias_of(g, column, row, 1, deviations) > 0;
 }
 
 TEST(LightChange, NoiseAloneMarksNothing) {
@@ -84,6 +99,7 @@ TEST(LightChange, NoiseAloneMarksNothing) {
     g.measure();
     ASSERT_EQ(g.marked(), 0) << seed;
     ASSERT_EQ(g.change.share(), 0.0);
+    ASSERT_EQ(g.change.bias(20, 20), 0.0f);
   }
 }
 
@@ -145,6 +161,67 @@ TEST(LightChange, ManyTilesThatEachDifferTooLittleMarkTheFrameWhereTheRuleSaysSo
   }
 }
 
+TEST(LightChange, BiasIsTheLargestThatTileGroupAndFrameShow) {
+  constexpr int kGroup = LightChange::kGroup;
+  int by_group = 0, by_frame = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    Gathered g;
+    g.rule.moving_deviations = 4.0f;
+    test::Random random(seed);
+    g.noise(random);
+    Gathered::each([&](int x, int y) {
+      if (random.uniform() < 0.1) g.values[3].at(x, y) = 0.0f;
+      if (random.uniform() < 0.1) test::set_pixel(g.guides, x, y, 0.0f, glm::vec3(0));
+    });
+    g.shift(seed % 2 == 0 ? kGroup * kTile : kWidth, random.real(0.0f, 0.2f));
+    g.shift_tile(1, 1, random.real(0.0f, 0.5f));
+    for (const bool moving : {false, true}) {
+      moving ? g.measure_moving() : g.measure();
+      const double limit = double{g.rule.tile_deviations};
+      const double group_limit = moving ? double{g.rule.moving_deviations} : limit;
+      for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+          const double tile = bias_of(g, column, row, 1, limit);
+          const double group =
+              bias_of(g, column / kGroup * kGroup, row / kGroup * kGroup, kGroup, group_limit);
+          const double frame = bias_of(g, 0, 0, kColumns, double{g.rule.frame_deviations});
+          by_group += group > std::max(tile, frame) ? 1 : 0;
+          by_frame += frame > std::max(tile, group) ? 1 : 0;
+          ASSERT_NEAR(double{g.change.bias(column * kTile, row * kTile)},
+                      std::max({tile, group, frame}), 1e-5)
+              << seed << ": " << column << ' ' << row;
+          ASSERT_FALSE(moving && g.tile_marked(column, row));
+        }
+    }
+  }
+  EXPECT_GT(by_group, 100);
+  EXPECT_GT(by_frame, 100);
+}
+
+// A tile's mean has an error of 1/16 of a deviation here, the frame's one of 1/63.
+TEST(LightChange, AShiftBelowTheNoiseOfATileIsExpectedOfEveryPixel) {
+  Gathered g;
+  test::Random random(8);
+  g.noise(random);
+  g.shift(kWidth, 0.05f);
+  g.measure();
+  EXPECT_EQ(g.marked(), 0);
+  Gathered::each([&](int x, int y) {
+    ASSERT_NEAR(g.change.bias(x, y), 3 * 0.05f * 0.05f, 0.005f) << x << ' ' << y;
+  });
+  g.change.clear();
+  EXPECT_EQ(g.change.bias(0, 0), 0.0f);
+}
+
+TEST(LightChange, ABiasWithoutNoiseIsTheLargestOfAll) {
+  Gathered g;
+  Gathered::each([&](int x, int y) {
+    for (int c = 0; c < 3; ++c) g.values[c].at(x, y) = g.differences[c].at(x, y) = 0.5f;
+  });
+  g.measure_moving();
+  EXPECT_EQ(g.change.bias(3, 3), TileSums::kMostBias);
+}
+
 TEST(LightChange, RoundingOfAConstantImageIsNoChange) {
   Gathered g;
   Gathered::each([&](int x, int y) {
@@ -155,6 +232,7 @@ TEST(LightChange, RoundingOfAConstantImageIsNoChange) {
   });
   g.measure();
   EXPECT_EQ(g.marked(), 0);
+  EXPECT_EQ(g.change.bias(0, 0), 0.0f);
 }
 
 TEST(LightChange, WithoutHistoryNothingIsKnownToChange) {

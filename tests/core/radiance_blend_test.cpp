@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -147,6 +148,29 @@ TEST(RadianceBlend, AtRestADifferenceMustBeLargerToCount) {
   }
   EXPECT_GT(kept[1], 0.7 * 64);
   EXPECT_LT(kept[0], 0.5 * 64);
+}
+
+// One sample in 20 is lit, to a mean of 1.5 where history has 0.1: windows of 49 know too little.
+TEST(RadianceBlend, ALightThatIsTooWeakForAWindowIsFollowedAtOnceWhereTheFrameShowsIt) {
+  for (const bool at_rest : {false, true}) {
+    double error[2];
+    for (const bool noticed : {false, true}) {
+      Blend b;
+      b.at_rest = at_rest;
+      b.rule.change.noticed = noticed;
+      test::Random random(77);
+      Blend::each([&](int x, int y) {
+        const float lit = random.uniform() < 0.05 ? 30.0f : 0.0f;
+        for (int c = 0; c < 3; ++c) b.noisy[c].at(x, y) = lit;
+      });
+      b.fill_history({0.1f, 0.1f, 0.1f}, 64);
+      b.run(b.by_surface());
+      error[noticed ? 1 : 0] =
+          std::abs(mean_of(std::as_const(b.now).data[1]) - mean_of(std::as_const(b.noisy)[1]));
+    }
+    EXPECT_LT(error[1], 0.3) << at_rest;
+    EXPECT_GT(error[0], 1.5 * error[1]) << at_rest;
+  }
 }
 
 TEST(RadianceBlend, TakesTheBetterOfTwoCandidates) {

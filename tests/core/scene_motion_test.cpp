@@ -67,7 +67,8 @@ TEST(SceneMotion, RemembersOnlySoManyObjectsAndForgetsThoseListedLongestAgo) {
   const glm::dmat4 elsewhere = glm::translate(glm::dmat4(1), {0.0, 1.0, 0.0});
   advance(scene, frame_of(camera, {{known, elsewhere}, {forgotten, elsewhere}}));
   EXPECT_NE(scene.slot_of(known), 0);
-  EXPECT_EQ(scene.slot_of(forgotten), 0);
+  EXPECT_FALSE(scene.object(scene.slot_of(known)).appeared);
+  EXPECT_TRUE(scene.object(scene.slot_of(forgotten)).appeared);
 }
 
 TEST(SceneMotion, AFrameMayListMoreObjectsThanAreRemembered) {
@@ -206,6 +207,27 @@ TEST(SceneMotion, ALightOrObjectThatAppearsIsNoRest) {
   frame.objects[3] = glm::dmat4(1);
   EXPECT_FALSE(at_rest_after());
   EXPECT_TRUE(at_rest_after());
+}
+
+TEST(SceneMotion, AnObjectHasAppearedInTheFrameThatListsItFirstAndStandsStillThere) {
+  SceneMotion scene;
+  Frame frame = frame_of(test::perspective_camera(kWidth, kHeight, {0, 0, 0}));
+  frame.objects[2] = glm::dmat4(1);
+  const auto appeared = [&](std::uint32_t id) {
+    const int slot = scene.slot_of(id);
+    return slot != 0 && scene.object(slot).appeared;
+  };
+  scene.advance(frame, kWidth, kHeight, {});
+  EXPECT_FALSE(appeared(2)) << "before the first frame nothing is known of anything";
+  frame.objects[3] = glm::translate(glm::dmat4(1), {0, 2, 0});
+  scene.advance(frame, kWidth, kHeight, {});
+  EXPECT_TRUE(appeared(3));
+  EXPECT_FALSE(appeared(2));
+  EXPECT_TRUE(scene.object(scene.slot_of(3)).at_rest && scene.geometry_at_rest());
+  frame.objects[3] = glm::translate(glm::dmat4(1), {0, 3, 0});
+  scene.advance(frame, kWidth, kHeight, {});
+  EXPECT_FALSE(appeared(3));
+  EXPECT_FALSE(scene.geometry_at_rest());
 }
 
 TEST(SceneMotion, LightsAreRelativeToTheCameraOfTheirFrame) {

@@ -1,5 +1,7 @@
 // Whole frames of every recipe through the kernels, against the oracle.
 
+#include <vector>
+
 #include "tests/oracle/within_budget.h"
 
 namespace holdfast {
@@ -26,6 +28,16 @@ TEST_P(Recipes, AgreeWithTheOracleAtSizesThatFillNoBlock) {
   for (const auto& [width, height] :
        {std::pair{1, 1}, {2, 3}, {17, 9}, {67, 5}, {133, 5}, {5, 133}})
     compare(width, height, 3);
+}
+
+TEST_P(Recipes, AgreeWithTheOracleWhenAnObjectIsPlacedForTheFirstTime) {
+  std::vector<OracleScene> scenes = oracle_scenes(64, 48, 4);
+  OracleScene& scene = scenes[0];
+  for (int t = 0; t < 2; ++t) scene.frames[static_cast<std::size_t>(t)].objects.clear();
+  DenoiserConfig config = scene.config;
+  config.recipe = GetParam();
+  test::expect_within_budget(filter_frames(config, "balanced", scene.frames),
+                             filter_by_oracle(config, "balanced", scene.frames));
 }
 
 std::string name_of(const testing::TestParamInfo<std::string>& info) {

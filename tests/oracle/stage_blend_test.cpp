@@ -1,6 +1,7 @@
 // What blends a frame with its history, each kernel by itself, against the oracle.
 
 #include "core/frame/plane_size.h"
+#include "core/motion/follow_block.h"
 #include "core/oracle/candidates.h"
 #include "core/oracle/exponential.h"
 #include "tests/oracle/stage_twins.h"
@@ -128,6 +129,9 @@ TEST(StageOracle, VisibilityByExpectedErrorAgreesOnEveryInstructionSet) {
         const Image same_footprint = test::image_of(footprint, 0, 3);
         ExpectedErrorRule rule;
         rule.change.noticed = with_footprint;
+        for (int x = 0; x < width; x += 3)  // shadows of what has just appeared
+          twins.effect.motion[kMotionSweep].at(x, height / 2) = kAppearedSweep;
+        twins.effect_past.sweep = test::image_of(twins.effect.motion, kMotionSweep, 1);
         const oracle::Blended expected = oracle::blend_visibility(
             twins.surfaces, twins.noisy_image, twins.same_sources(with_effect),
             test::image_of(variance, 0, 1), with_footprint ? &same_footprint : nullptr, rule,
@@ -152,6 +156,11 @@ TEST(StageOracle, RadianceByExpectedErrorAgreesOnEveryInstructionSet) {
         const Image same_footprint = test::image_of(footprint, 0, 3);
         RadianceBlendRule rule;
         rule.effect_substitutes = substitutes;
+        // Most tiles, groups of them and the frame differ by that much.
+        rule.change = {.noticed = true,
+                       .tile_deviations = 1.0f,
+                       .frame_deviations = 0.3f,
+                       .moving_deviations = 0.5f};
         const oracle::Blended expected = oracle::blend_radiance(
             twins.surfaces, twins.noisy_image, twins.same_sources(true),
             at_rest ? nullptr : &same_footprint, rule, at_rest, test::history_of(twins.before));
