@@ -116,8 +116,8 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
   const ChannelView<const float> differences[2] = {std::as_const(s.differences)[kSurface],
                                                    std::as_const(s.differences)[kShadow]};
   if (rule.change.noticed) {  // by the surface's: nothing moves
-    s.change.measure(guides,
-                     {s.candidates, s.differences, kSurface, kSurface, 1, kSamples + kSurface},
+    const Channels<float>& values = s.candidates;
+    s.change.measure({guides, {values[kSurface]}, values[kSamples + kSurface], {noisy[0]}, 1},
                      rule.change);
     drop_changed(s);
   } else {

@@ -20,10 +20,9 @@ void LightChange::clear() {
   share_ = 0;
 }
 
-void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
-                          const LightChangeRule& rule) {
+void LightChange::measure(const TileSignal& signal, const LightChangeRule& rule) {
   clear();
-  add_up(guides, gathered);
+  add_up(signal);
   estimate_bias(rule, rule.tile_deviations);
   TileCounts counts;
   for (std::size_t tile = 0; tile < sums_.size(); ++tile) {
@@ -41,38 +40,27 @@ void LightChange::measure(const Guides& guides, const GatheredHistory& gathered,
   }
 }
 
-void LightChange::measure_moving(const Guides& guides, const GatheredHistory& gathered,
-                                 const LightChangeRule& rule) {
+void LightChange::measure_moving(const TileSignal& signal, const LightChangeRule& rule) {
   clear();
-  add_up(guides, gathered);
+  add_up(signal);
   estimate_bias(rule, rule.moving_deviations);
 }
 
-void LightChange::add_up(const Guides& guides, const GatheredHistory& gathered) {
-  for_each_row(rows_, [&](int row) { add_up_row(row, guides, gathered); });
+void LightChange::add_up(const TileSignal& signal) {
+  for_each_index(0, rows_, 1, [&](int row) { add_up_row(row, signal); });
 }
 
-void LightChange::add_up_row(int row, const Guides& guides, const GatheredHistory& gathered) {
-  const int y_end = std::min((row + 1) * kTile, guides.view.height);
-  for (int column = 0; column < columns_; ++column) {
-    TileSums sums;
-    const int x_end = std::min((column + 1) * kTile, guides.view.width);
-    for (int y = row * kTile; y < y_end; ++y) {
-      const float* depth = guides.depth().row(y);
-      const float* samples = gathered.values[gathered.samples].row(y);
-      for (int c = 0; c < gathered.channels; ++c) {
-        const float* value = gathered.values[gathered.first_value + c].row(y);
-        const float* difference = gathered.differences[gathered.first_difference + c].row(y);
-        for (int x = column * kTile; x < x_end; ++x) {
-          if (!(depth[x] > 0.0f) || !(samples[x] > 0.0f)) continue;
-          sums.pixels += c == 0 ? 1 : 0;
-          sums.square += static_cast<double>(difference[x]) * static_cast<double>(difference[x]);
-          sums.difference[c] += static_cast<double>(difference[x]);
-          sums.value[c] += static_cast<double>(value[x]);
-        }
-      }
-    }
-    sums_[static_cast<std::size_t>(row * columns_ + column)] = sums;
+void LightChange::add_up_row(int row, const TileSignal& signal) {
+  for (int column = 0; column < columns_; ++column)
+    sums_[static_cast<std::size_t>(row * columns_ + column)] =
+        sums_of_tile(signal, column * kTile, row * kTile);
+}
+
+void LightChange::biases(int x, int y, int count, float* out) const {
+  for (int i = 0; i < count;) {
+    const int left = std::min(kTile - (x + i) % kTile, count - i);
+    std::fill_n(out + i, left, bias(x + i, y));
+    i += left;
   }
 }
 

@@ -3,26 +3,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/frame/guides.h"
 #include "core/history/tile_sums.h"
 
 namespace holdfast {
-
-/// Candidate values of a history, and their differences to the frame, as a blend has gathered them.
-struct GatheredHistory {
-  const Channels<float>& values;
-  const Channels<float>& differences;         ///< value minus frame; 0 where there is no history
-  int first_value = 0, first_difference = 0;  ///< channels of the candidate
-  int channels = 1;
-  int samples = 0;  ///< channel of `values`: 0 where there is no history
-};
 
 /// Where light has changed: a light was switched or dimmed, something appeared, or a cut went
 /// unannounced. One pixel's neighbourhood cannot tell such a change from its noise; a tile can, or
 /// a group of tiles, or the frame.
 class LightChange {
  public:
-  static constexpr int kTile = 16;  ///< pixels
+  static constexpr int kTile = kTilePixels;
   static constexpr int kGroup = 4;  ///< tiles
 
   LightChange() = default;
@@ -35,12 +25,11 @@ class LightChange {
   /// Marks all tiles where more than frame_share of them, and more than three, differ by
   /// frame_deviations instead. And estimates `bias`, of groups with
   /// tile_deviations.
-  ///   reads guides, gathered | halo 0
-  void measure(const Guides& guides, const GatheredHistory& gathered, const LightChangeRule& rule);
+  ///   reads signal | halo 0
+  void measure(const TileSignal& signal, const LightChangeRule& rule);
   /// Where something moves: marks nothing, and estimates `bias`, of groups with moving_deviations.
-  ///   reads guides, gathered | halo 0
-  void measure_moving(const Guides& guides, const GatheredHistory& gathered,
-                      const LightChangeRule& rule);
+  ///   reads signal | halo 0
+  void measure_moving(const TileSignal& signal, const LightChangeRule& rule);
   /// Nothing has changed.
   void clear();
 
@@ -54,14 +43,16 @@ class LightChange {
   float bias(int x, int y) const {
     return bias_[static_cast<std::size_t>(y / kTile * columns_ + x / kTile)];
   }
+  /// The same of `count` pixels from (x, y) on.
+  void biases(int x, int y, int count, float* out) const;
   /// How many of the `count` pixels from (x, y) on have all changed, or all not.
   int run(int x, int y, int count) const;
   /// Share of the tiles with history that have changed themselves, 0..1; 1 where all are marked.
   double share() const { return share_; }
 
  private:
-  void add_up(const Guides& guides, const GatheredHistory& gathered);
-  void add_up_row(int row, const Guides& guides, const GatheredHistory& gathered);
+  void add_up(const TileSignal& signal);
+  void add_up_row(int row, const TileSignal& signal);
   void estimate_bias(const LightChangeRule& rule, float group_deviations);
   void estimate_bias(int size, double deviations, double least_share);
   void mark_around();

@@ -78,15 +78,23 @@ struct RadianceBlend {
   /// In a scene at rest of the first candidate: the others lead nowhere else.
   void look_for_changes(const Guides& guides) const {
     for (int k = 0; k < candidates(); ++k) {
-      const GatheredHistory gathered{s.candidates,        s.differences[k], kStep * k, 0, 3,
-                                     kStep * k + kSamples};
       if (!rule.change.noticed || (at_rest && k > 0))
         s.change[k].clear();
       else if (at_rest)
-        s.change[k].measure(guides, gathered, rule.change);
+        s.change[k].measure(signal_of(guides, k), rule.change);
       else
-        s.change[k].measure_moving(guides, gathered, rule.change);
+        s.change[k].measure_moving(signal_of(guides, k), rule.change);
     }
+  }
+
+  TileSignal signal_of(const Guides& guides, int k) const {
+    const Channels<float>& values = s.candidates;
+    TileSignal signal{guides, {}, values[kStep * k + kSamples], {}, 3};
+    for (int c = 0; c < 3; ++c) {
+      signal.history[c] = values[kStep * k + c];
+      signal.noisy[c] = noisy[c];
+    }
+    return signal;
   }
 
   void blend_row(int y, const float* spread) const {
@@ -100,7 +108,7 @@ struct RadianceBlend {
       const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
       for (int k = 0; k < candidates(); ++k) {
         const LightChange& change = s.change[at_rest ? 0 : k];
-        for (int i = 0; i < count; ++i) expected[k][i] = change.bias(x + i, y);
+        change.biases(x, y, count, expected[k]);
       }
       blend_candidates({{first, second},
                         second != nullptr && any(second, count) ? 2 : 1,

@@ -31,7 +31,7 @@ enum class RestFinding {
 /// |D| is no less than the rule's least share of the mean.
 class RestCheck {
  public:
-  static constexpr int kTile = 16;  ///< pixels
+  static constexpr int kTile = kTilePixels;
   /// Of a frame in the lasting difference. Ours.
   static constexpr double kWeight = 1.0 / 16;
   /// Of a frame in the mean |d|^2, at least. Ours: a slow change is found before it is usual.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/frame/guides.h"
+
 namespace holdfast {
 
 /// When a tile counts as changed. Ours; tuned on scenes at rest with and without a light switched.
@@ -60,19 +62,33 @@ struct TileSums {
                                                                     : TileFinding::kSame;
   }
 
-  /// The squared bias of h that |mean d|^2 shows, in variances of one pixel's d and at most
-  /// kMostBias; 0 unless mean d is `deviations` of its standard errors and shows beside mean h.
+  /// The squared bias of h that |mean d|^2 shows beyond `deviations` of its standard errors, which
+  /// chance may make, in variances of one pixel's d and at most kMostBias; 0 unless it shows beside
+  /// mean h.
   float bias(double deviations, double least_share) const {
     if (!(pixels > 1)) return 0.0f;
     const double shift = shift2(), error = error2();
     if (!(shift > square_of(least_share) * level2())) return 0.0f;
-    if (!(shift > square_of(deviations) * error)) return 0.0f;
+    const double shown = shift - square_of(deviations) * error;
+    if (!(shown > 0)) return 0.0f;
     const double most = double{kMostBias} * error * pixels;
-    return shift - error < most ? static_cast<float>((shift - error) / (error * pixels))
-                                : kMostBias;
+    return shown < most ? static_cast<float>(shown / (error * pixels)) : kMostBias;
   }
   static constexpr float kMostBias = 100.0f;  ///< nothing is left of a history by then
 };
+
+inline constexpr int kTilePixels = 16;  ///< width and height of a tile
+
+/// A history and the frame that it is held against, all of one size.
+struct TileSignal {
+  const Guides& guides;
+  ChannelView<const float> history[3], samples;  ///< without samples, a history may hold anything
+  ChannelView<const float> noisy[3];             ///< finite
+  int channels = 1;                              ///< 1 or 3
+};
+
+/// Sums over the tile whose first pixel is (x, y).
+TileSums sums_of_tile(const TileSignal& signal, int x, int y);
 
 /// How many tiles of an image are found to be what.
 struct TileCounts {

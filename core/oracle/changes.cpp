@@ -65,7 +65,8 @@ Changes::Changes(const Surfaces& now, const Image& values, const Image& differen
         const Square sums(now, values, differences, samples, left, top, size);
         if (!sums.differs(rule, deviations)) continue;
         // n error^2 is the variance of one difference.
-        const double shown = (sums.shift2 - sums.error2) / std::max(sums.n * sums.error2, 1e-300);
+        const double chance = square(double{deviations}) * sums.error2;
+        const double shown = (sums.shift2 - chance) / std::max(sums.n * sums.error2, 1e-300);
         for (int y = top; y < std::min(top + size, now.height); ++y)
           for (int x = left; x < std::min(left + size, now.width); ++x)
             bias_.at(x, y) = std::max(bias_.at(x, y), std::min(shown, double{TileSums::kMostBias}));

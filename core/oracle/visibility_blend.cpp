@@ -98,10 +98,7 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
         (!has_surface || of_shadow.error < double{rule.surface_advantage} * of_surface.error);
     out.now.signal.at(x, y) = noisy.at(x, y);
     out.now.samples.at(x, y) = 1;
-    if (!has_surface && !has_shadow) {  // dropped, but found
-      if (sources.surface->at(x, y).any()) out.record(x, y, *sources.surface, 0, 0);
-      return;
-    }
+    if (!has_surface && !has_shadow) return;
     const Candidate& chosen = by_shadow ? shadow : surface;
     const Promise promise = by_shadow ? of_shadow : of_surface;
     const double h = chosen.value.at(x, y), n = chosen.samples.at(x, y);

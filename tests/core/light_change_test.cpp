@@ -17,6 +17,7 @@ constexpr int kColumns = (kWidth + kTile - 1) / kTile, kRows = (kHeight + kTile 
 struct Gathered {
   Guides guides = test::wall(test::orthographic_camera(kWidth, kHeight), kWidth, kHeight);
   Channels<float> values{kWidth, kHeight, 4}, differences{kWidth, kHeight, 4};
+  Channels<float> frame{kWidth, kHeight, 3};
   LightChange change{kWidth, kHeight};
   LightChangeRule rule{.noticed = true};
 
@@ -47,8 +48,15 @@ struct Gathered {
       for (int c = 0; c < 3; ++c) differences[c].at(x, y) += x < columns ? by : 0.0f;
     });
   }
-  void measure_moving() { change.measure_moving(guides, {values, differences, 0, 0, 3, 3}, rule); }
-  void measure() { change.measure(guides, {values, differences, 0, 0, 3, 3}, rule); }
+  TileSignal signal() {
+    each([&](int x, int y) {
+      for (int c = 0; c < 3; ++c) frame[c].at(x, y) = values[c].at(x, y) - differences[c].at(x, y);
+    });
+    return {
+        guides, {values[0], values[1], values[2]}, values[3], {frame[0], frame[1], frame[2]}, 3};
+  }
+  void measure_moving() { change.measure_moving(signal(), rule); }
+  void measure() { change.measure(signal(), rule); }
   bool tile_marked(int column, int row) const {
     return change.changed(column * kTile, row * kTile);
   }
@@ -81,7 +89,7 @@ double bias_of(const Gathered& g, int column, int row, int size, double deviatio
   const double shift = glm::dot(mean, mean), error = variance / n;
   return shift > deviations * deviations * error &&
                  glm::length(mean) > double{g.rule.least_share} * glm::length(level)
-             ? (shift - error) / variance
+             ? (shift - deviations * deviations * error) / variance
              : 0;
 }
 

@@ -168,7 +168,7 @@ TEST(RadianceBlend, ALightThatIsTooWeakForAWindowIsFollowedAtOnceWhereTheFrameSh
       error[noticed ? 1 : 0] =
           std::abs(mean_of(std::as_const(b.now).data[1]) - mean_of(std::as_const(b.noisy)[1]));
     }
-    EXPECT_LT(error[1], 0.3) << at_rest;
+    EXPECT_LT(error[1], 0.35) << at_rest;  // of 1.5: what chance may show is not expected
     EXPECT_GT(error[0], 1.5 * error[1]) << at_rest;
   }
 }
