@@ -36,33 +36,34 @@ nlohmann::ordered_json load_json(const LoadResult& result) {
     ms[part.name]["max"] = largest(result.times.*part.values);
   }
   for (const auto& [kind, count] : result.errors) errors[kind] = count;
-  return {{"sessions", options.sessions},
-          {"fps", options.fps},
-          {"seconds", options.seconds},
-          {"width", options.sizes.front().width},
-          {"height", options.sizes.front().height},
-          {"sizes", load_sizes(options)},
-          {"delay_ms", options.link.delay_ms},
-          {"bandwidth_mbit", options.link.bandwidth_mbit},
-          {"churn_s", options.churn_s},
-          {"clients", result.clients},
-          {"recipe", options.recipe},
-          {"preset", options.preset},
-          {"wire", options.wire},
-          {"submitted", result.submitted},
-          {"answered", result.answered},
-          {"dropped", result.dropped},
-          {"skipped", result.skipped},
-          {"late", result.late},
-          {"frames_per_second", result.frames_per_second()},
-          {"elapsed_s", result.elapsed_s},
-          {"bytes_in", result.bytes_in},
-          {"bytes_out", result.bytes_out},
-          {"reconnects", result.reconnects},
-          {"shared_memory",
-           {{"asked", !options.access.shared_memory.empty()}, {"clients", result.sharing}}},
-          {"errors", errors},
-          {"ms", ms}};
+  nlohmann::ordered_json json = {{"sessions", options.sessions},
+                                 {"fps", options.fps},
+                                 {"seconds", options.seconds},
+                                 {"width", options.sizes.front().width},
+                                 {"height", options.sizes.front().height},
+                                 {"sizes", load_sizes(options)},
+                                 {"delay_ms", options.link.delay_ms},
+                                 {"bandwidth_mbit", options.link.bandwidth_mbit},
+                                 {"churn_s", options.churn_s},
+                                 {"clients", result.clients},
+                                 {"recipe", options.recipe},
+                                 {"preset", options.preset},
+                                 {"wire", options.wire},
+                                 {"submitted", result.submitted},
+                                 {"answered", result.answered},
+                                 {"dropped", result.dropped},
+                                 {"skipped", result.skipped},
+                                 {"late", result.late},
+                                 {"frames_per_second", result.frames_per_second()},
+                                 {"elapsed_s", result.elapsed_s},
+                                 {"bytes_in", result.bytes_in},
+                                 {"bytes_out", result.bytes_out},
+                                 {"reconnects", result.reconnects},
+                                 {"errors", errors},
+                                 {"ms", ms}};
+  if (!options.access.shared_memory.empty())
+    json["shared_memory"] = {{"asked", true}, {"clients", result.sharing}};
+  return json;
 }
 
 std::string load_text(const LoadResult& result) {

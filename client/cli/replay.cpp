@@ -170,10 +170,11 @@ nlohmann::ordered_json replay_json(const ReplayResult& result) {
       {"ms", {{"core", percentiles(result.core_ms)}, {"total", percentiles(result.total_ms)}}},
       {"bytes_in", result.bytes_in},
       {"bytes_out", result.bytes_out},
-      {"shared_memory", {{"asked", result.shared_memory_asked}, {"used", result.shared_memory}}},
       {"non_finite_in", result.non_finite_in},
       {"non_finite_out", result.non_finite_out}};
   if (result.with_budget) json["presets"] = result.presets;
+  if (result.shared_memory_asked)
+    json["shared_memory"] = {{"asked", true}, {"used", result.shared_memory}};
   return json;
 }
 

@@ -81,7 +81,7 @@ TEST_F(Access, LoadAndReplaySayWhetherTheyGotTheSharedMemoryThatTheyAskedFor) {
   }
   ASSERT_EQ(load({"--tls-ca", pem("ca.pem"), "--json", result}), 0) << text;
   const auto json = nlohmann::json::parse(test::file_text(result), nullptr, false);
-  EXPECT_EQ(json["shared_memory"], nlohmann::json({{"asked", false}, {"clients", 0}}));
+  EXPECT_FALSE(json.contains("shared_memory"));
   EXPECT_EQ(text.find("shared memory"), std::string::npos) << text;
 }
 
