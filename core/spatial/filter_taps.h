@@ -167,16 +167,9 @@ HOLDFAST_INLINE TapPlace own_place(const FilterPixel& p) {
   return {p.plane, p.offset, kFootprint ? p.footprint : 0.0f};
 }
 
-/// Adds the tap at row position `q`; `bits`: weight_bits of its kernel weight.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void add_tap(const TapRow& t, int q, const TapPlace& at, float bits,
-                             const FilterPixel& p, FilterSums<C>& s) {
-  const float e = t.depth[q] * at.plane + at.offset;
-  const float turned = t.normal_power - p.nx * t.nx[q] - p.ny * t.ny[q] - p.nz * t.nz[q];
-  float exponent = abs_of(e) + positive_part(turned);
-  if constexpr (kLuminance) exponent += abs_of(t.luminance[q] - p.luminance) * p.inverse_sigma;
-  if constexpr (kFootprint) exponent += at.footprint;
-  const float g = weight_exp(bits, exponent);
+/// Adds the tap at row position `q`, of weight g.
+template <int C, Spread kSpread>
+HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>& s) {
   const float w = kSpread == Spread::kSamples ? g * t.spread[q] : g;
   s.weight += w;
   s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
@@ -187,6 +180,18 @@ HOLDFAST_INLINE void add_tap(const TapRow& t, int q, const TapPlace& at, float b
   if constexpr (C > 4) s.value[4] += w * t.in[4][q];
   if constexpr (C > 5) s.value[5] += w * t.in[5][q];
   if constexpr (C > 6) s.value[6] += w * t.in[6][q];
+}
+
+/// Adds the tap at row position `q`; `bits`: weight_bits of its kernel weight.
+template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void add_tap(const TapRow& t, int q, const TapPlace& at, float bits,
+                             const FilterPixel& p, FilterSums<C>& s) {
+  const float e = t.depth[q] * at.plane + at.offset;
+  const float turned = t.normal_power - p.nx * t.nx[q] - p.ny * t.ny[q] - p.nz * t.nz[q];
+  float exponent = abs_of(e) + positive_part(turned);
+  if constexpr (kLuminance) exponent += abs_of(t.luminance[q] - p.luminance) * p.inverse_sigma;
+  if constexpr (kFootprint) exponent += at.footprint;
+  add_weighted<C, kSpread>(t, q, weight_exp(bits, exponent), s);
 }
 
 /// Adds the taps of one row, whose kernel's weights have these bits by distance.

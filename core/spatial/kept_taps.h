@@ -25,21 +25,6 @@ HOLDFAST_INLINE float upper_weight(std::uint32_t word) {
   return static_cast<float>(static_cast<std::int32_t>(word >> 16));
 }
 
-/// Adds the tap at row position `q`, of weight g.
-template <int C, Spread kSpread>
-HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>& s) {
-  const float w = kSpread == Spread::kSamples ? g * t.spread[q] : g;
-  s.weight += w;
-  s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
-  s.value[0] += w * t.in[0][q];
-  if constexpr (C > 1) s.value[1] += w * t.in[1][q];
-  if constexpr (C > 2) s.value[2] += w * t.in[2][q];
-  if constexpr (C > 3) s.value[3] += w * t.in[3][q];
-  if constexpr (C > 4) s.value[4] += w * t.in[4][q];
-  if constexpr (C > 5) s.value[5] += w * t.in[5][q];
-  if constexpr (C > 6) s.value[6] += w * t.in[6][q];
-}
-
 /// What a pixel's footprint leaves of opposite taps, which it weighs alike, times the kernel.
 struct PairWeights {
   float beside, column, falling, rising;  ///< falling: from the upper left to the lower right
