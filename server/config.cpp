@@ -61,6 +61,9 @@ void check_config(const ServerConfig& config) {
   check_file("token file", config.token_file);
   if (config.limits.max_sessions_per_token > 0 && config.token_file.empty())
     throw InputError("limit of sessions for each token", "must come with a token file", "alone");
+  if (!(config.limits.max_load >= 0 && config.limits.max_load <= 1))
+    throw InputError("limit of the load", "must be in 0..1",
+                     std::to_string(config.limits.max_load));
   if (!(config.limits.max_frames_per_second >= 0))
     throw InputError("frames per second", "must be at least 0",
                      std::to_string(config.limits.max_frames_per_second));

@@ -22,6 +22,9 @@ struct SessionLimits {
   double max_frames_per_second = 0;         ///< of each session; 0 = no limit
   std::size_t max_bytes_per_second = 0;     ///< that each session may send; 0 = no limit
   std::size_t max_sessions_per_token = 0;   ///< made with the same bearer token; 0 = no limit
+  /// Share of the time of the threads that filter, which sessions that tell their rate may take
+  /// together, 0..1; 0 = no limit.
+  double max_load = 0.75;
 };
 
 /// Encryption of the service; off unless `certificate` is set. All are files in PEM form, read

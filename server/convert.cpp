@@ -117,6 +117,16 @@ void read_transforms(const char* what,
   }
 }
 
+void check_rate(const SessionConfig& config) {
+  const double rate = config.frames_per_second;
+  if (!(rate >= 0) || !std::isfinite(rate))
+    throw InputError("frames per second", "must be finite and at least 0", std::to_string(rate));
+  if (rate > 0 && config.denoiser.preset == "reference")
+    throw InputError("frames per second",
+                     "must be 0 with preset reference, whose costs are not known",
+                     std::to_string(rate));
+}
+
 void check_budget(const SessionConfig& config) {
   if (config.budget_ms > 0 && config.denoiser.preset == "reference")
     throw InputError("budget", "must be 0 with preset reference, which no other can stand in for",
@@ -158,6 +168,8 @@ SessionConfig session_config_from(const v1::CreateSessionRequest& request) {
     throw InputError("budget", "must be finite and at least 0 ms",
                      std::to_string(config.budget_ms));
   check_budget(config);
+  config.frames_per_second = request.frames_per_second();
+  check_rate(config);
   config.latest = request.late_frames() == v1::LATE_FRAMES_LATEST;
   config.results = results_from(request, core);
   return config;
@@ -170,6 +182,7 @@ SessionConfig changed_config(const v1::SessionChange& change, SessionConfig conf
   core.recipe = checked_name("recipe", change.recipe(), recipe_names(), core.recipe);
   core.preset = checked_name("preset", change.preset(), preset_names(), core.preset);
   check_budget(config);
+  check_rate(config);
   return config;
 }
 

@@ -95,6 +95,8 @@ Metrics::Metrics()
       session_bytes_(gauge(*registry_, "holdfast_session_bytes", "Memory accounted to sessions")),
       scratch_bytes_(gauge(*registry_, "holdfast_scratch_bytes",
                            "Memory accounted to the scratch that sessions share")),
+      load_(gauge(*registry_, "holdfast_load",
+                  "Share of the filtering time admitted to sessions that tell their rate")),
       resident_bytes_(gauge(*registry_, "holdfast_resident_bytes", "Memory of the process")),
       ready_(gauge(*registry_, "holdfast_ready", "1 if new sessions are accepted")) {
   // Series exist from the start, so that a rate over them does not miss the first event.
@@ -153,6 +155,7 @@ std::string Metrics::text(const Now& now) {
   streams_.Set(static_cast<double>(now.streams));
   session_bytes_.Set(static_cast<double>(now.session_bytes));
   scratch_bytes_.Set(static_cast<double>(now.scratch_bytes));
+  load_.Set(now.load);
   resident_bytes_.Set(resident_bytes());
   ready_.Set(now.ready ? 1 : 0);
   return prometheus::TextSerializer().Serialize(registry_->Collect());

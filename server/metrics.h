@@ -27,6 +27,7 @@ namespace holdfast::server {
 ///                                         draining, unauthenticated, too_slow, failure
 ///   holdfast_session_ends_total{reason}   deleted, expired
 ///   holdfast_sessions, holdfast_streams, holdfast_session_bytes, holdfast_scratch_bytes,
+///   holdfast_load (share of the filtering time admitted to sessions that tell their rate),
 ///   holdfast_resident_bytes, holdfast_ready  at the time of reading
 class Metrics {
  public:
@@ -46,6 +47,7 @@ class Metrics {
   /// What is measured when the metrics are read.
   struct Now {
     std::size_t sessions = 0, streams = 0, session_bytes = 0, scratch_bytes = 0;
+    double load = 0;
     bool ready = false;
   };
   /// All metrics in the text format of Prometheus.
@@ -60,8 +62,8 @@ class Metrics {
   prometheus::Counter &received_, &sent_;
   prometheus::Family<prometheus::Histogram>& stages_;
   prometheus::Histogram &receive_, &decode_, &wait_, &filter_, &encode_, &send_;
-  prometheus::Gauge &sessions_, &streams_, &session_bytes_, &scratch_bytes_, &resident_bytes_,
-      &ready_;
+  prometheus::Gauge &sessions_, &streams_, &session_bytes_, &scratch_bytes_, &load_,
+      &resident_bytes_, &ready_;
 };
 
 }  // namespace holdfast::server

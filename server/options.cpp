@@ -90,6 +90,12 @@ void add_options(CLI::App& app, ServerConfig& config) {
       ->check(CLI::Range(0.0, 100000.0));
   knobs.bytes("--max-bytes-per-second", config.limits.max_bytes_per_second,
               "that each session may send, in the same way; 0 = no limit");
+  knobs
+      .value(
+          "--max-load", config.limits.max_load,
+          "share of the time of the threads that filter, which sessions that tell their rate may "
+          "take together, 0..1; 0 = no limit")
+      ->check(CLI::Range(0.0, 1.0));
   knobs.value("--max-sessions-per-token", config.limits.max_sessions_per_token,
               "made with the same bearer token; 0 = no limit");
   knobs.milliseconds("--linger-ms", config.limits.linger,

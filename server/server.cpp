@@ -124,7 +124,7 @@ class Server::Impl {
     const auto metrics = [this, ready] {
       return state_.metrics.text({state_.sessions.size(), state_.streams.size(),
                                   state_.sessions.session_bytes(), state_.sessions.scratch_bytes(),
-                                  ready()});
+                                  state_.sessions.load(), ready()});
     };
     const auto sessions = [this] {
       return sessions_json(state_, std::chrono::steady_clock::now());

@@ -1,6 +1,7 @@
 #include "server/session_change.h"
 
 #include "server/convert.h"
+#include "server/session_costs.h"
 #include "server/status.h"
 
 namespace holdfast::server {
@@ -22,7 +23,7 @@ std::optional<v1::FrameError> take_change(ServiceState& state,
   SessionConfig next = changed_config(frame.change(), *config);
   const DenoiserConfig& core = next.denoiser;
   if (same_choice(core, config->denoiser)) return {};
-  if (next.budget_ms > 0) next.preset_ms = expected_ms(state.costs.get(), core);
+  expect_costs(state.costs, next);
   reserved = state.sessions.reserve(session, next);
   state.log->info("event=session_change session={} size={}x{} recipe={} preset={}", session->id(),
                   core.width, core.height, core.recipe, core.preset);

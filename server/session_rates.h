@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <mutex>
 
 #include "server/config.h"
@@ -15,8 +16,9 @@ class SessionRates {
   using TimePoint = TokenBucket::TimePoint;
   using Duration = TokenBucket::Duration;
 
-  SessionRates(const SessionLimits& limits, TimePoint now)
-      : frames_(limits.max_frames_per_second, kBurstSeconds * limits.max_frames_per_second, now),
+  /// `told`: frames a second that the client has told; 0 = none.
+  SessionRates(const SessionLimits& limits, double told, TimePoint now)
+      : frames_(rate_of(limits, told), burst_of(limits, told), now),
         bytes_(static_cast<double>(limits.max_bytes_per_second),
                kBurstSeconds * static_cast<double>(limits.max_bytes_per_second), now) {}
 
@@ -36,6 +38,18 @@ class SessionRates {
 
  private:
   static constexpr double kBurstSeconds = 0.25;  // ours: jitter of a network passes, a flood not
+  static constexpr double kDrift = 1.05;         // clocks differ, and a rate is told roughly
+  static constexpr double kBurstFrames = 8;      // as warm a new server
+
+  static double rate_of(const SessionLimits& limits, double told) {
+    if (told <= 0) return limits.max_frames_per_second;
+    return limits.max_frames_per_second > 0 ? std::min(limits.max_frames_per_second, kDrift * told)
+                                            : kDrift * told;
+  }
+  static double burst_of(const SessionLimits& limits, double told) {
+    const double burst = kBurstSeconds * rate_of(limits, told);
+    return told > 0 ? std::max(burst, kBurstFrames) : burst;
+  }
 
   std::mutex mutex_;
   TokenBucket frames_, bytes_;

@@ -4,6 +4,7 @@
 #include "proto/wire_profile.h"
 #include "server/convert.h"
 #include "server/error.h"
+#include "server/session_costs.h"
 #include "server/status.h"
 #include "server/version.h"
 
@@ -62,6 +63,8 @@ grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerCont
     response->set_max_sessions(static_cast<std::uint32_t>(state_.config.limits.max_sessions));
     response->set_sessions(static_cast<std::uint32_t>(state_.sessions.size()));
     response->set_threads(static_cast<std::uint32_t>(state_.scheduler.threads()));
+    response->set_load(state_.sessions.load());
+    response->set_max_load(state_.config.limits.max_load);
   });
 }
 
@@ -73,7 +76,7 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
     SessionConfig asked = session_config_from(*request);
     asked.shared_memory = request->shared_memory() && !state_.config.shared_memory.empty();
-    if (asked.budget_ms > 0) asked.preset_ms = expected_ms(state_.costs.get(), asked.denoiser);
+    expect_costs(state_.costs, asked);
     const auto session = state_.sessions.create(std::move(asked), owner);
     const SessionConfig config = *session->config();
     response->set_session_id(session->id());
@@ -88,10 +91,10 @@ grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerCont
     response->set_shared_memory(config.shared_memory);
     state_.log->info(
         "event=session_create session={} size={}x{} planes={} recipe={} preset={} "
-        "budget_ms={} memory_mib={}",
+        "budget_ms={} frames_per_second={} load={:.3f} memory_mib={}",
         session->id(), config.denoiser.width, config.denoiser.height, config.denoiser.planes.size(),
-        config.denoiser.recipe, config.denoiser.preset, config.budget_ms,
-        response->memory_bytes() >> 20);
+        config.denoiser.recipe, config.denoiser.preset, config.budget_ms, config.frames_per_second,
+        config.load, response->memory_bytes() >> 20);
   });
 }
 

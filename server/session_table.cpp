@@ -1,6 +1,7 @@
 #include "server/session_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/frame/error.h"
 #include "server/error.h"
@@ -12,6 +13,17 @@ namespace {
 
 constexpr int kIdBytes = 8;      // enough to be unique; not a secret
 constexpr int kTokenBytes = 16;  // 128 bits: not to be guessed
+
+constexpr double kMostCorrected = 4;  // of what is expected of a session, either way
+
+/// The rate of a session whose frames all take the same time; 0 if it has told none.
+double fixed_rate(const SessionConfig& config) {
+  return config.budget_ms > 0 ? 0 : config.frames_per_second;
+}
+
+std::string percent(double share) {
+  return std::to_string(std::lround(100 * std::min(share, 1e9))) + " %";
+}
 
 std::string mib(std::size_t bytes) {
   return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
@@ -29,7 +41,7 @@ std::shared_ptr<Session> SessionTable::create(SessionConfig config, const std::s
     const std::lock_guard lock(mutex_);
     check_count(owner);  // before anything is made: a flood of refusals must be cheap
   }
-  admit(id, needed_bytes(config), owner);
+  admit(id, needed_bytes(config), config, owner);
   try {
     auto session = std::make_shared<Session>(id, random_hex(kTokenBytes), std::move(config),
                                              limits_.credits, scratch_);
@@ -62,6 +74,33 @@ void SessionTable::check_bytes(SessionBytes bytes) const {
 }
 
 /// Called with the mutex held.
+void SessionTable::check_load(double more) const {
+  if (limits_.max_load <= 0 || more <= 0) return;
+  const auto [there, correction] = loads();
+  const double most = limits_.max_load, own = more * correction;
+  if (there + own <= most) return;
+  throw RefusedError("the session's rate would take " + percent(own) +
+                         " of the machine's time; others have " + percent(there) +
+                         ", and the server allows " + percent(most),
+                     {"max-load", own <= most ? limits_.linger : std::chrono::milliseconds{}});
+}
+
+/// Called with the mutex held.
+SessionTable::Loads SessionTable::loads() const {
+  double measured = 0, expected_of_these = 0, expected_of_others = 0;
+  for (const auto& [id, entry] : entries_) {
+    const double ms = entry.rate > 0 ? entry.watch->core_ms() : 0;
+    measured += 1e-3 * ms * entry.rate;
+    (ms > 0 ? expected_of_these : expected_of_others) += entry.load;
+  }
+  Loads out;
+  if (expected_of_these > 0)
+    out.correction = std::clamp(measured / expected_of_these, 1 / kMostCorrected, kMostCorrected);
+  out.sum = measured + out.correction * expected_of_others;
+  return out;
+}
+
+/// Called with the mutex held.
 void SessionTable::check_count(const std::string& owner) const {
   if (entries_.size() >= limits_.max_sessions)
     throw RefusedError(
@@ -76,14 +115,17 @@ void SessionTable::check_count(const std::string& owner) const {
                        {"max-sessions-per-token", limits_.linger});
 }
 
-void SessionTable::admit(const std::string& id, SessionBytes bytes, const std::string& owner) {
+void SessionTable::admit(const std::string& id, SessionBytes bytes, const SessionConfig& config,
+                         const std::string& owner) {
   const std::lock_guard lock(mutex_);
   check_count(owner);
   check_bytes(bytes);
+  check_load(config.load);
   const TimePoint now = clock_();
-  entries_.emplace(id, Entry{nullptr, bytes, 0, SessionLife(now), owner,
-                             std::make_shared<SessionRates>(limits_, now),
-                             std::make_shared<SessionWatch>(++made_)});
+  entries_.emplace(
+      id, Entry{nullptr, bytes, 0, config.load, fixed_rate(config), SessionLife(now), owner,
+                std::make_shared<SessionRates>(limits_, config.frames_per_second, now),
+                std::make_shared<SessionWatch>(++made_)});
   account_.add(bytes);
 }
 
@@ -117,19 +159,25 @@ std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& sess
     const std::lock_guard lock(mutex_);
     Entry& entry = live_entry(session->id());
     check_bytes(bytes);
+    check_load(config.load - entry.load);
     account_.add(bytes);
     entry.reserved += bytes.own;
+    entry.load = std::max(entry.load, config.load);
+    entry.rate = 0;  // until frames of the new kind tell what they take
   }
   return {session.get(), [this, session, bytes](void*) { end_reservation(*session, bytes); }};
 }
 
 void SessionTable::end_reservation(const Session& session, SessionBytes reserved) {
-  const SessionBytes has = with_frames(*session.config(), session.denoiser_bytes());
+  const std::shared_ptr<const SessionConfig> config = session.config();
+  const SessionBytes has = with_frames(*config, session.denoiser_bytes());
   const std::lock_guard lock(mutex_);
   account_.remove(reserved);
   const auto it = entries_.find(session.id());
   if (it == entries_.end() || it->second.session.get() != &session) return;
   it->second.reserved -= reserved.own;
+  it->second.load = config->load;
+  it->second.rate = fixed_rate(*config);
   settle(it->second, has);
 }
 
@@ -237,6 +285,11 @@ std::size_t SessionTable::session_bytes() const {
 std::size_t SessionTable::scratch_bytes() const {
   const std::lock_guard lock(mutex_);
   return account_.scratch();
+}
+
+double SessionTable::load() const {
+  const std::lock_guard lock(mutex_);
+  return loads().sum;
 }
 
 std::size_t SessionTable::total_bytes() const {

@@ -78,6 +78,9 @@ class SessionTable {
   std::size_t session_bytes() const;
   std::size_t scratch_bytes() const;
   std::size_t total_bytes() const;
+  /// Share of the filtering threads' time that sessions which have told their rate take: by the
+  /// time of their frames, where enough are known, else as expected of others like them.
+  double load() const;
   const SessionLimits& limits() const { return limits_; }
 
  private:
@@ -85,6 +88,8 @@ class SessionTable {
     std::shared_ptr<Session> session;  ///< null while it is being made
     SessionBytes bytes;
     std::size_t reserved = 0;  ///< of its own for changes under way
+    double load = 0;           ///< SessionConfig::load, the greater one while it changes
+    double rate = 0;           ///< told, if it goes with one preset; else 0
     SessionLife life;
     std::string owner;  ///< a secret: compared, never shown
     std::shared_ptr<SessionRates> rates;
@@ -93,13 +98,20 @@ class SessionTable {
 
   Entry& live_entry(const std::string& id);
   const Entry& checked(const std::string& id, const std::string& token) const;
-  void admit(const std::string& id, SessionBytes bytes, const std::string& owner);
+  void admit(const std::string& id, SessionBytes bytes, const SessionConfig& config,
+             const std::string& owner);
   void check_count(const std::string& owner) const;
   void settle(Entry& entry, SessionBytes bytes);
   void end_reservation(const Session& session, SessionBytes reserved);
   SessionBytes needed_bytes(const SessionConfig& session) const;
   SessionBytes with_frames(const SessionConfig& session, SessionBytes denoiser) const;
   void check_bytes(SessionBytes bytes) const;
+  void check_load(double more) const;
+  /// What sessions take that tell their rate, and how that is to what was expected of them.
+  struct Loads {
+    double sum = 0, correction = 1;
+  };
+  Loads loads() const;
 
   const SessionLimits limits_;
   const Clock clock_;

@@ -45,6 +45,15 @@ void SessionWatch::sent(const FrameSlot& slot, const std::string& preset, TimePo
   if (times_.size() > kWindow) times_.pop_front();
 }
 
+double SessionWatch::core_ms() const {
+  constexpr std::size_t kFilter = 3;  // of kWatchedStages
+  const std::lock_guard lock(mutex_);
+  if (times_.size() < kJudged) return 0;
+  std::vector<double> values;
+  for (auto it = times_.rbegin(); values.size() < kJudged; ++it) values.push_back((*it)[kFilter]);
+  return percentile(values, 0.5);
+}
+
 SessionWatch::Glance SessionWatch::glance(TimePoint now) const {
   const std::lock_guard lock(mutex_);
   Glance out = counts_;

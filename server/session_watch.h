@@ -40,11 +40,15 @@ class SessionWatch {
     Times p50{}, p95{};            ///< of the last filtered frames, at most kWindow
   };
   Glance glance(TimePoint now) const;
+  /// Median time in the core of the last kJudged filtered frames, milliseconds; 0 before there are
+  /// as many.
+  double core_ms() const;
   int ordinal() const { return ordinal_; }
   PreviewBox& preview() { return preview_; }
   RepairLog& repairs() { return repairs_; }
 
   static constexpr std::size_t kWindow = 240;  ///< frames: four seconds of a fast game
+  static constexpr std::size_t kJudged = 32;
   static constexpr double kRateSeconds = 5;
 
  private:

@@ -47,6 +47,8 @@ std::string sessions_json(const ServiceState& state, std::chrono::steady_clock::
               {"session_bytes", state.sessions.session_bytes()},
               {"scratch_bytes", state.sessions.scratch_bytes()},
               {"max_total_bytes", state.config.limits.max_total_bytes},
+              {"load", state.sessions.load()},
+              {"max_load", state.config.limits.max_load},
               {"previews", state.config.admin_previews},
               {"stages", kWatchedStages},
               {"sessions", sessions}}

@@ -29,7 +29,8 @@ struct LoadOptions {
   /// Frames that each session sends a second, whether or not the server keeps up (open loop); 0 =
   /// the next when a credit is free (closed loop).
   double fps = 0;
-  double seconds = 10;  ///< for which frames are sent; the answers of all are waited for
+  bool tell_rate = false;  ///< sessions tell the server `fps`, which may then refuse them
+  double seconds = 10;     ///< for which frames are sent; the answers of all are waited for
   std::string recipe = "reliable";
   std::string preset = "balanced";
   Link link;           ///< between each session and the server

@@ -24,11 +24,11 @@ std::string LoadClient::make_session() try {
 void LoadClient::run(std::chrono::steady_clock::time_point start) {
   using Seconds = std::chrono::duration<double>;
   const auto since = [&] { return Seconds(std::chrono::steady_clock::now() - start).count(); };
+  if (!session_ && options_.churn_s <= 0) return;  // refused
   // The first to leave do so early, so that they do not all leave at once.
   double stay = options_.churn_s * (part_ > 0 ? part_ : 1);
   for (double begin = 0; begin < options_.seconds;) {
     if (!session_ && !make_session().empty()) {
-      if (options_.churn_s <= 0) return;
       std::this_thread::sleep_for(kPause);
       begin = since();
       continue;

@@ -93,6 +93,10 @@ void add_load(CLI::App& app) {
                   "many milliseconds")
       ->check(CLI::PositiveNumber)
       ->excludes(fps);
+  command
+      .add_flag("--tell-rate", options.tell_rate,
+                "sessions tell the server --fps, which refuses those that it has no time for")
+      ->needs(fps);
   command.add_flag("--latest", options.latest,
                    "as a game: frames that newer ones overtake are dropped");
   command

@@ -26,6 +26,7 @@ client::SessionOptions session_options(const LoadOptions& options, const std::st
   out.wire = options.wire;
   out.late_frames = options.latest ? client::LateFrames::kLatest : client::LateFrames::kAll;
   out.frame_deadline_ms = options.deadline_ms;
+  if (options.tell_rate) out.frames_per_second = options.fps;
   out.rewarm_frames = 0;  // frames are used again as soon as they are answered
   return out;
 }

@@ -62,6 +62,7 @@ void write_create_request(const SessionOptions& options, v1::CreateSessionReques
   request.set_seed(options.seed);
   request.set_debug_planes(options.debug_planes);
   request.set_budget_ms(options.budget_ms);
+  request.set_frames_per_second(options.frames_per_second);
   request.set_wire(options.wire);
   request.set_shared_memory(!options.shared_memory.empty());
   if (options.late_frames == LateFrames::kLatest) request.set_late_frames(v1::LATE_FRAMES_LATEST);

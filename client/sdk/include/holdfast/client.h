@@ -72,6 +72,9 @@ struct SessionOptions {
   bool debug_planes = false;  ///< also motion, history and confidence of each component
   double budget_ms = 0;       ///< wished time of a frame in the core, for which faster presets than
                               ///< `preset` may be used; 0 = none
+  /// Frames that will be sent a second; 0 = not told. A server that has not so much time left
+  /// refuses the session (RefusedError), and reads it no faster than that.
+  double frames_per_second = 0;
   std::string wire = "exact";    ///< name of the wire profile
   std::vector<PlaneId> results;  ///< result planes to send back; empty = all
   LateFrames late_frames = LateFrames::kAll;
