@@ -1,5 +1,6 @@
 #include "client/cli/load.h"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <optional>
@@ -71,15 +72,19 @@ LoadResult run_load(const LoadOptions& given) {
   }
   std::deque<LoadClient> clients;
   for (int i = 0; i < options.sessions; ++i) {
-    const double part = static_cast<double>(i) / options.sessions;
-    clients.emplace_back(options, address, frames[static_cast<std::size_t>(i) % frames.size()],
-                         part);
+    clients.emplace_back(options, address, frames[static_cast<std::size_t>(i) % frames.size()]);
     const std::string refusal = clients.back().make_session();
     if (!refusal.empty() && clients.size() == 1) throw ServerUnreachable(refusal);
   }
   const auto start = std::chrono::steady_clock::now();
+  const auto takes_part = [](const LoadClient& client) { return client.takes_part(); };
+  const auto parts = std::count_if(clients.begin(), clients.end(), takes_part);
   std::vector<std::thread> threads;
-  for (LoadClient& client : clients) threads.emplace_back([&] { client.run(start); });
+  for (LoadClient& client : clients) {
+    if (!client.takes_part()) continue;
+    const double part = static_cast<double>(threads.size()) / static_cast<double>(parts);
+    threads.emplace_back([&client, start, part] { client.run(start, part); });
+  }
   for (std::thread& thread : threads) thread.join();
   for (const LoadClient& client : clients) result.add(client.result());
   return result;

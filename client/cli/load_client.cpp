@@ -21,12 +21,11 @@ std::string LoadClient::make_session() try {
   return error.what();
 }
 
-void LoadClient::run(std::chrono::steady_clock::time_point start) {
+void LoadClient::run(std::chrono::steady_clock::time_point start, double part) {
   using Seconds = std::chrono::duration<double>;
   const auto since = [&] { return Seconds(std::chrono::steady_clock::now() - start).count(); };
-  if (!session_ && options_.churn_s <= 0) return;  // refused
   // The first to leave do so early, so that they do not all leave at once.
-  double stay = options_.churn_s * (part_ > 0 ? part_ : 1);
+  double stay = options_.churn_s * (part > 0 ? part : 1);
   for (double begin = 0; begin < options_.seconds;) {
     if (!session_ && !make_session().empty()) {
       std::this_thread::sleep_for(kPause);
@@ -37,7 +36,7 @@ void LoadClient::run(std::chrono::steady_clock::time_point start) {
     const double length = options_.churn_s > 0 ? std::min(stay, left) : left;
     const auto at =
         start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(begin));
-    session_->run({start, at, length, part_});
+    session_->run({start, at, length, part});
     result_.add(session_->result());
     session_.reset();
     begin = std::max(begin + length, since());

@@ -100,6 +100,29 @@ TEST_F(Load, WritesAPageWithItsFiguresByItself) {
   EXPECT_EQ(page.find("href="), std::string::npos);
 }
 
+TEST_F(Load, GoesOnWithThoseThatAreAdmittedAndCountsTheOthersOnce) {
+  test::Program server({HOLDFAST_SERVER_PROGRAM, "--listen", "127.0.0.1:0", "--threads", "1",
+                        "--max-sessions", "2", "--max-load", "0.5"},
+                       dir / "server");
+  ASSERT_TRUE(server.wait_for("event=listening")) << server.text();
+  const std::string log = server.text(), key = "address=";
+  const std::size_t from = log.find(key) + key.size();
+  const std::string address = log.substr(from, log.find(' ', from) - from);
+  const std::vector<std::string> common{"load",      "--server", address,        "--size",
+                                        "16x12",     "--json",   path("j.json"), "--tell-rate",
+                                        "--seconds", "0.5",      "--sessions",   "5"};
+  std::vector<std::string> slow = common, fast = common;
+  slow.insert(slow.end(), {"--fps", "20"});
+  ASSERT_EQ(holdfast(slow), 0) << text;
+  const auto json = nlohmann::json::parse(test::file_text(dir / "j.json"), nullptr, false);
+  EXPECT_EQ(json["answered"], 20);
+  EXPECT_EQ(json["errors"], nlohmann::json({{"refused", 3}}));
+  fast.insert(fast.end(), {"--fps", "10000000"});
+  EXPECT_EQ(holdfast(fast), 3);
+  EXPECT_NE(text.find("the server allows 50 %"), std::string::npos) << text;
+  EXPECT_EQ(holdfast(common), 2) << "there is no rate to tell";
+}
+
 TEST_F(Load, SaysThatAServerIsNotThere) {
   EXPECT_EQ(holdfast({"load", "--server", "127.0.0.1:1", "--seconds", "1", "--size", "8x8"}), 3);
   EXPECT_NE(text.find("cannot be reached"), std::string::npos) << text;
