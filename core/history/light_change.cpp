@@ -51,9 +51,9 @@ void LightChange::add_up(const TileSignal& signal) {
 }
 
 void LightChange::add_up_row(int row, const TileSignal& signal) {
-  for (int column = 0; column < columns_; ++column)
-    sums_[static_cast<std::size_t>(row * columns_ + column)] =
-        sums_of_tile(signal, column * kTile, row * kTile);
+  for_each_tile(signal, row, [&](int column, const TileSums& sums) {
+    sums_[static_cast<std::size_t>(row * columns_ + column)] = sums;
+  });
 }
 
 void LightChange::biases(int x, int y, int count, float* out) const {

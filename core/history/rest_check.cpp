@@ -61,12 +61,11 @@ RestFinding RestCheck::look(const RestSignal& signal, const LightChangeRule& rul
 }
 
 void RestCheck::look_at_row(int row, const RestSignal& signal, const LightChangeRule& rule) {
-  for (int column = 0; column < columns_; ++column) {
+  for_each_tile(signal_of(signal), row, [&](int column, const TileSums& sums) {
     const auto tile = static_cast<std::size_t>(row * columns_ + column);
-    const TileSums sums = sums_of_tile(signal_of(signal), column * kTile, row * kTile);
     found_[tile] = tiles_[tile].look(sums, rule, 1.0 / frames_);
     slow_[tile] = tiles_[tile].changes_slowly(sums, rule) ? 1 : 0;
-  }
+  });
 }
 
 }  // namespace holdfast

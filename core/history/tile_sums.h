@@ -87,8 +87,22 @@ struct TileSignal {
   int channels = 1;                              ///< 1 or 3
 };
 
-/// Sums over the tile whose first pixel is (x, y).
-TileSums sums_of_tile(const TileSignal& signal, int x, int y);
+inline constexpr int kTilesAtOnce = 16;  ///< of a row: its lines are read as they lie in memory
+
+/// Sums over `count` tiles, 1..kTilesAtOnce, from `column` on in a row of tiles.
+void sum_tiles(const TileSignal& signal, int column, int row, int count, TileSums* sums);
+
+/// Calls `use(column, sums)` for every tile of a row of tiles.
+template <class Use>
+void for_each_tile(const TileSignal& signal, int row, Use&& use) {
+  const int columns = (signal.guides.view.width + kTilePixels - 1) / kTilePixels;
+  for (int first = 0; first < columns; first += kTilesAtOnce) {
+    const int count = std::min(kTilesAtOnce, columns - first);
+    TileSums sums[kTilesAtOnce];
+    sum_tiles(signal, first, row, count, sums);
+    for (int i = 0; i < count; ++i) use(first + i, sums[i]);
+  }
+}
 
 /// How many tiles of an image are found to be what.
 struct TileCounts {
