@@ -163,7 +163,7 @@ std::shared_ptr<void> SessionTable::reserve(const std::shared_ptr<Session>& sess
     account_.add(bytes);
     entry.reserved += bytes.own;
     entry.load = std::max(entry.load, config.load);
-    entry.rate = 0;  // until frames of the new kind tell what they take
+    entry.rate = 0;  // what frames took before says nothing of this
   }
   return {session.get(), [this, session, bytes](void*) { end_reservation(*session, bytes); }};
 }
