@@ -5,6 +5,7 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include "core/frame/error.h"
+#include "proto/receive_memory.h"
 #include "server/options.h"
 #include "server/server.h"
 #include "server/version.h"
@@ -26,6 +27,7 @@ sigset_t block_stop_signals() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  holdfast::wire::keep_receive_memory();
   holdfast::server::ServerConfig config;
   config.calibrate = true;
   bool only_check = false;

@@ -17,9 +17,7 @@ class Access : public test::ProgramTest {
                                "--tls-cert", pem("server.pem"), "--tls-key", pem("server.key")});
     server = std::make_unique<test::Program>(more, dir / "server");
     ASSERT_TRUE(server->wait_for("event=listening")) << server->text();
-    const std::string log = server->text(), key = "address=";
-    const std::size_t from = log.find(key) + key.size();
-    address = log.substr(from, log.find(' ', from) - from);
+    address = server->printed("address=");
   }
   int load(std::vector<std::string> more) {
     more.insert(more.begin(), {"load", "--size", "16x12", "--seconds", "0.2", "--fps", "10",

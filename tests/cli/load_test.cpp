@@ -105,9 +105,7 @@ TEST_F(Load, GoesOnWithThoseThatAreAdmittedAndCountsTheOthersOnce) {
                         "--max-sessions", "2", "--max-load", "0.5"},
                        dir / "server");
   ASSERT_TRUE(server.wait_for("event=listening")) << server.text();
-  const std::string log = server.text(), key = "address=";
-  const std::size_t from = log.find(key) + key.size();
-  const std::string address = log.substr(from, log.find(' ', from) - from);
+  const std::string address = server.printed("address=");
   const std::vector<std::string> common{"load",      "--server", address,        "--size",
                                         "16x12",     "--json",   path("j.json"), "--tell-rate",
                                         "--seconds", "0.5",      "--sessions",   "5"};

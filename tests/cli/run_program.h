@@ -60,6 +60,14 @@ class Program {
   }
   /// What it has printed so far.
   std::string text() const { return file_text(output_); }
+  /// What it has printed after `key`, up to the next space; empty if it has not.
+  std::string printed(const std::string& key) const {
+    const std::string all = text();
+    const std::size_t at = all.find(key);
+    if (at == std::string::npos) return {};
+    const std::size_t from = at + key.size();
+    return all.substr(from, all.find(' ', from) - from);
+  }
   /// Waits until it has printed `part`; false after ten seconds.
   bool wait_for(const std::string& part) const {
     for (int i = 0; i < 1000; ++i) {

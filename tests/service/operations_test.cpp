@@ -3,6 +3,8 @@
 #include <sstream>
 #include <thread>
 
+#include <nlohmann/json.hpp>
+
 #include "core/frame/error.h"
 #include "server/options.h"
 #include "tests/service/http_get.h"
@@ -102,6 +104,37 @@ TEST_F(Operations, MetricsCountFramesStagesResetsAndRefusals) {
   wrong.finish();
   EXPECT_TRUE(shows("holdfast_refusals_total{reason=\"wrong_token\"} 1"));
   EXPECT_EQ(get("/metrics").find(client.session.session_id()), std::string::npos);
+}
+
+TEST_F(Operations, TheShareOfTimeThatIsAdmittedIsToldEverywhereAlike) {
+  config.calibrate = true;
+  config.limits.max_load = 0.6;
+  start(true);
+  client::SessionOptions options = test::session_options(*server, frames);
+  const auto stub = v1::SessionService::NewStub(
+      grpc::CreateChannel(server->address(), grpc::InsecureChannelCredentials()));
+  const auto info = [&] {
+    grpc::ClientContext context;
+    v1::GetServerInfoResponse response;
+    EXPECT_TRUE(stub->GetServerInfo(&context, {}, &response).ok());
+    return response;
+  };
+  EXPECT_EQ(value("holdfast_load"), 0);
+  EXPECT_EQ(info().load(), 0);
+  EXPECT_DOUBLE_EQ(info().max_load(), 0.6);
+  options.frames_per_second = 100;
+  const client::Session first(options);
+  const double one = info().load();
+  EXPECT_GT(one, 0);
+  const client::Session second(options);
+  options.frames_per_second = 0;
+  const client::Session silent(options);
+  EXPECT_NEAR(info().load(), 2 * one, 1e-9 * one) << "who tells no rate has no share";
+  EXPECT_NEAR(value("holdfast_load"), 2 * one, 1e-5 * one);
+  const std::string page = get("/sessions.json");
+  const auto json = nlohmann::json::parse(page.substr(page.find('{')));
+  EXPECT_NEAR(json["load"].get<double>(), 2 * one, 1e-9 * one);
+  EXPECT_DOUBLE_EQ(json["max_load"].get<double>(), 0.6);
 }
 
 TEST_F(Operations, RefusalForALimitNamesItAndWhenToComeBack) {
