@@ -95,4 +95,19 @@ class SceneMotion {
   std::vector<ObjectMotion<float>> objects_;
 };
 
+/// `slot_of` for pixels in a row, most of which show the object of the one before.
+class SlotFinder {
+ public:
+  explicit SlotFinder(const SceneMotion& scene) : scene_(scene), slot_(scene.slot_of(id_)) {}
+  int of(std::uint32_t object_id) {
+    if (object_id != id_) slot_ = scene_.slot_of(id_ = object_id);
+    return slot_;
+  }
+
+ private:
+  const SceneMotion& scene_;
+  std::uint32_t id_ = 0;
+  int slot_;
+};
+
 }  // namespace holdfast

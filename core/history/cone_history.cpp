@@ -25,15 +25,13 @@ void mix(const ConeMix& mix, float* const* of, int i) {
 }
 
 /// The taps at which cones are looked for: the surface's, else those of what stands in for it.
-void choose_taps(const SurfaceHistory* surface, const EffectHistory* effect, int x, int y,
-                 int count, Taps* taps) {
-  if (surface == nullptr) {
-    std::fill_n(taps, count, Taps{});
-    return;
-  }
+/// Written to `own` if they are not all of one kind.
+const Taps* choose_taps(const SurfaceHistory* surface, const EffectHistory* effect, int x, int y,
+                        int count, Taps* own) {
+  static constexpr Taps kNone[kTapBlock] = {};
+  if (surface == nullptr) return kNone;
   const Taps* first = surface->taps[0].row(y) + x;
-  const Taps* second = effect != nullptr ? effect->taps[0].row(y) + x : first;
-  for (int i = 0; i < count; ++i) taps[i] = first[i].any() ? first[i] : second[i];
+  return effect == nullptr ? first : preferred_taps(first, effect->taps[0].row(y) + x, count, own);
 }
 
 /// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
@@ -84,10 +82,10 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
     means_to_sums(rows_at(0, y, now.view.width, images));
   });
   for_each_row(now.view.height, [&](int y) {
-    Taps taps[kTapBlock];
+    Taps own[kTapBlock];
     for (int x = 0; x < now.view.width; x += kTapBlock) {
       const int count = std::min(kTapBlock, now.view.width - x);
-      choose_taps(surface, effect, x, y, count, taps);
+      const Taps* taps = choose_taps(surface, effect, x, y, count, own);
       const ConeRows rows = rows_at(x, y, count, room.updated);
       ConeCorrection block{now.depth().row(y) + x, {},   {}, rule.prior_samples,
                            rule.most_samples,      rows, {}};

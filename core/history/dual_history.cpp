@@ -1,5 +1,6 @@
 #include "core/history/dual_history.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/kernels/parallel.h"
@@ -48,14 +49,18 @@ Taps dual_taps(const FramePair& frames, const SurfaceHistory& surface, int x, in
 
 void trace_dual_history(const FramePair& frames, const SurfaceHistory& surface,
                         EffectHistory& out) {
+  const int width = frames.now.view.width;
   for_each_row(frames.now.view.height, [&](int y) {
-    for (int x = 0; x < frames.now.view.width; ++x) {
-      Taps taps;
+    std::fill_n(out.taps[0].row(y), width, Taps{});
+    for (const int c : {kMotionX, kMotionY, kMotionTrust})
+      std::fill_n(out.motion[c].row(y), width, 0.0f);
+    const float* depth = frames.now.depth().row(y);
+    const Taps* followed = surface.taps[0].row(y);
+    for (int x = 0; x < width; ++x) {
+      if (followed[x].any() || !(depth[x] > 0.0f)) continue;
       glm::vec2 motion_px(0.0f);
-      if (frames.now.depth().at(x, y) > 0.0f && !surface.taps[0].at(x, y).any())
-        taps = dual_taps(frames, surface, x, y, motion_px);
-      if (!taps.any()) motion_px = glm::vec2(0.0f);
-      out.set(x, y, taps, motion_px.x, motion_px.y, taps.any() ? 1.0f : 0.0f);
+      const Taps taps = dual_taps(frames, surface, x, y, motion_px);
+      if (taps.any()) out.set(x, y, taps, motion_px.x, motion_px.y, 1.0f);
     }
   });
 }

@@ -18,13 +18,14 @@ struct Wanted {
   FollowedBlock wanted;
   std::uint32_t id[kFollowBlock];
   float roughness[kFollowBlock];
-  Taps taps[kFollowBlock];
+  Taps* taps;  ///< of the lanes
 };
 
 /// A block of a row on its way to the previous frame.
 struct Lanes : Wanted {
-  ReflectedBlock images;
-  float centre_x[kFollowBlock], centre_y[kFollowBlock];  ///< of the images
+  FollowedBlock some;                                    ///< of those on one of several objects
+  float now_x[kFollowBlock], now_y[kFollowBlock];        ///< of the images, this frame
+  float centre_x[kFollowBlock], centre_y[kFollowBlock];  ///< of the images, one frame ago
   int surface[kFollowBlock], hit[kFollowBlock];          ///< slots; -1: followed
 };
 
@@ -43,14 +44,16 @@ class GlossyTracer {
 
   /// The pixels of a block from (x, y) on.
   void trace(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
+    lanes.taps = out.taps[0].row(y) + x;
+    std::fill_n(lanes.wanted.found, count, 0.0f);
     if (!any_sample(x, y, count)) {
-      std::fill_n(lanes.wanted.found, count, 0.0f);
+      std::fill_n(lanes.taps, count, Taps{});
       return write(x, y, count, lanes, out);
     }
-    find_slots(x, y, count, lanes);
-    std::fill_n(lanes.wanted.found, count, 0.0f);
+    const bool one_pair = find_slots(x, y, count, lanes);
     for (int i = 0; i < count; ++i)
-      if (lanes.surface[i] >= 0) follow(lanes.surface[i], lanes.hit[i], x, y, count, lanes);
+      if (lanes.surface[i] >= 0)
+        follow(lanes.surface[i], lanes.hit[i], one_pair, x, y, count, lanes);
     if (rule_ == GlossyRule::kStochastic) {
       std::copy_n(lanes.wanted.x, count, lanes.centre_x);
       std::copy_n(lanes.wanted.y, count, lanes.centre_y);
@@ -65,36 +68,41 @@ class GlossyTracer {
 
  private:
   bool any_sample(int x, int y, int count) const {
-    bool any = false;
     for (int axis = 0; axis < 3; ++axis) {
       const float* direction = planes_.direction->channel(axis).row(y) + x;
-      for (int i = 0; i < count; ++i) any |= direction[i] != 0.0f;
+      if (std::any_of(direction, direction + count, [](float d) { return d != 0.0f; })) return true;
     }
-    return any;
+    return false;
   }
 
-  void find_slots(int x, int y, int count, Lanes& lanes) const {
+  /// True if all surfaces are of one object and reflect one object.
+  bool find_slots(int x, int y, int count, Lanes& lanes) const {
     const float* depth = now_.depth().row(y) + x;
     const std::uint32_t* id = now_.id[0].row(y) + x;
     const std::uint32_t* hit_id = planes_.id != nullptr ? planes_.id->ids().row(y) + x : nullptr;
-    std::uint32_t last = 0, last_hit = 0;
-    int slot = scene_.slot_of(last), hit_slot = hit_id != nullptr ? slot : 0;
+    SlotFinder slot(scene_), hit_slot(scene_);
     for (int i = 0; i < count; ++i) {
-      if (id[i] != last) slot = scene_.slot_of(last = id[i]);
-      if (hit_id != nullptr && hit_id[i] != last_hit)
-        hit_slot = scene_.slot_of(last_hit = hit_id[i]);
-      lanes.surface[i] = depth[i] > 0.0f ? slot : -1;
-      lanes.hit[i] = hit_slot;
+      lanes.surface[i] = depth[i] > 0.0f ? slot.of(id[i]) : -1;
+      lanes.hit[i] = hit_id != nullptr ? hit_slot.of(hit_id[i]) : 0;
     }
     for (int i = 0; i < count; ++i) lanes.roughness[i] = now_.roughness_at(x + i, y);
+    const int* first =
+        std::find_if(lanes.surface, lanes.surface + count, [](int s) { return s >= 0; });
+    const auto at = first - lanes.surface;
+    bool one_pair = true;
+    for (auto i = at; i < count; ++i)
+      one_pair &= lanes.surface[i] < 0 ||
+                  (lanes.surface[i] == lanes.surface[at] && lanes.hit[i] == lanes.hit[at]);
+    return one_pair;
   }
 
-  /// Follows the pixels on one object that reflect another.
-  void follow(int surface, int hit, int x, int y, int count, Lanes& lanes) const {
+  /// Follows the pixels on one object that reflect another; `all`: there are no others.
+  void follow(int surface, int hit, bool all, int x, int y, int count, Lanes& lanes) const {
     const ObjectMotion<float>&of_surface = scene_.object(surface), &of_hit = scene_.object(hit);
     const bool traceable = of_surface.traceable && of_hit.traceable;
     // Where all stands still the image has not moved, whatever rounding says.
     const bool moves = rule_ == GlossyRule::kRelative && !(of_surface.at_rest && of_hit.at_rest);
+    FollowedBlock& then = all ? lanes.wanted : lanes.some;
     if (traceable) {
       const BlockPixels pixels(now_, x, y, count);
       const auto direction = [&](int axis) { return planes_.direction->channel(axis).row(y) + x; };
@@ -105,32 +113,33 @@ class GlossyTracer {
                          previous_pixel_,
                          {direction(0), direction(1), direction(2)},
                          planes_.distance->channel(0).row(y) + x,
-                         moves,
-                         lanes.images});
+                         then,
+                         moves ? lanes.now_x : nullptr,
+                         moves ? lanes.now_y : nullptr});
+      if (rule_ == GlossyRule::kRelative) displace(moves, x, y, count, lanes, then);
     }
     for (int i = 0; i < count; ++i) {
       if (lanes.surface[i] != surface || lanes.hit[i] != hit) continue;
       lanes.surface[i] = -1;
-      if (!traceable || lanes.images.then.found[i] == 0.0f) continue;
-      copy_lane(lanes.images.then, i, lanes.wanted, i);
-      if (rule_ != GlossyRule::kRelative) continue;
-      const float moved_x = moves ? lanes.images.then.x[i] - lanes.images.x[i] : 0.0f;
-      const float moved_y = moves ? lanes.images.then.y[i] - lanes.images.y[i] : 0.0f;
-      lanes.wanted.x[i] = static_cast<float>(x + i) + 0.5f + moved_x;
-      lanes.wanted.y[i] = static_cast<float>(y) + 0.5f + moved_y;
+      if (!all && traceable && then.found[i] > 0.0f) copy_lane(then, i, lanes.wanted, i);
+    }
+  }
+
+  /// From where images were to where pixels were that move as they do.
+  static void displace(bool moves, int x, int y, int count, const Lanes& lanes,
+                       FollowedBlock& then) {
+    const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
+    for (int i = 0; i < count; ++i) {
+      then.x[i] = static_cast<float>(i) + first_x + (moves ? then.x[i] - lanes.now_x[i] : 0.0f);
+      then.y[i] = row + (moves ? then.y[i] - lanes.now_y[i] : 0.0f);
     }
   }
 
   /// Draws a place around each that is wanted.
   void scatter(int x, int y, int count, Lanes& lanes) const {
     float u[kFollowBlock], v[kFollowBlock];
-    for (int i = 0; i < count; ++i) {
-      const std::uint64_t pixel =
-          (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x + i);
-      const UniformPair random = uniform_pair(frame_key_ ^ mix_bits(pixel));
-      u[i] = random.u;
-      v[i] = random.v;
-    }
+    draw_pairs({frame_key_, (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x),
+                count, u, v});
     spread_reflection({previous_pixel_, 1.0f / static_cast<float>(previous_.view.pixel_angle),
                        lanes.roughness, planes_.distance->channel(0).row(y) + x, u, v, lanes.wanted,
                        count, lanes.wanted.x, lanes.wanted.y});
@@ -149,6 +158,8 @@ class GlossyTracer {
   /// together so that no others are looked for.
   void look_at_centres(int count, Lanes& lanes) const {
     Wanted lost;
+    Taps found[kFollowBlock];
+    lost.taps = found;
     int source[kFollowBlock], left = 0;
     for (int i = 0; i < count; ++i) {
       if (lanes.wanted.found[i] == 0.0f || lanes.taps[i].any()) continue;
@@ -165,15 +176,13 @@ class GlossyTracer {
     for (int k = 0; k < left; ++k) lanes.taps[source[k]] = lost.taps[k];
   }
 
-  /// Writes the history of the pixels from (x, y) on: none where there are no taps.
+  /// Writes the vectors of the pixels from (x, y) on: none where there are no taps.
   void write(int x, int y, int count, const Lanes& lanes, EffectHistory& out) const {
-    Taps* taps = out.taps[0].row(y) + x;
     float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
           *trust = out.motion[kMotionTrust].row(y) + x;
     const float row = static_cast<float>(y) + 0.5f;
     for (int i = 0; i < count; ++i) {
       const bool any = lanes.wanted.found[i] > 0.0f && lanes.taps[i].any();
-      taps[i] = any ? lanes.taps[i] : Taps{};
       motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(x + i) + 0.5f) : 0.0f;
       motion_y[i] = any ? lanes.wanted.y[i] - row : 0.0f;
       trust[i] = any ? 1.0f : 0.0f;

@@ -38,8 +38,7 @@ struct RadianceBlend {
     if (sources.effect == nullptr) return surface;
     const Taps* effect = sources.effect->taps[0].row(y) + x;
     if (!rule.effect_substitutes) return k == 1 ? effect : surface;
-    for (int i = 0; i < count; ++i) own[i] = surface[i].any() ? surface[i] : effect[i];
-    return own;
+    return preferred_taps(surface, effect, count, own);
   }
 
   void read_row(int y) const {

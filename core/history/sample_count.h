@@ -16,16 +16,21 @@ class SampleCount {
   void measure(const Guides& guides, const ComponentHistory& history);
 
   /// Mean over surface pixels.
-  double mean() const { return pixels_ > 0 ? samples_ / pixels_ : 0; }
+  double mean() const { return total_.pixels > 0 ? total_.samples / total_.pixels : 0; }
   /// Mean over those that have a history; 0 if none has.
-  double mean_of_known() const { return known_ > 0 ? samples_ / known_ : 0; }
+  double mean_of_known() const { return total_.known > 0 ? total_.samples / total_.known : 0; }
 
  private:
   struct Row {
     double samples = 0, pixels = 0, known = 0;
+    void operator+=(const Row& other) {
+      samples += other.samples;
+      pixels += other.pixels;
+      known += other.known;
+    }
   };
   std::vector<Row> rows_;
-  double samples_ = 0, pixels_ = 0, known_ = 0;
+  Row total_;
 };
 
 }  // namespace holdfast

@@ -35,15 +35,13 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
   }
   if (!any) return false;
   const bool moving = tracer.moving_blockers_near(x, y, count);
-  std::uint32_t last_id = 0;
-  int last_slot = frames.scene.slot_of(last_id);
+  SlotFinder slot(frames.scene);
   for (int i = 0; i < count; ++i) {
     const bool own = rule == ShadowRule::kPaper && own_ratio[i] > 0.0f;
     lanes.own[i] = own;
     lanes.ratio[i] = own ? own_ratio[i] : ratio[i] / (lanes.wanted[i] ? valid[i] : 1.0f);
     if (!lanes.wanted[i]) continue;
-    if (id[i] != last_id) last_slot = frames.scene.slot_of(last_id = id[i]);
-    lanes.surface[i] = last_slot;
+    lanes.surface[i] = slot.of(id[i]);
     lanes.occluder[i] = !moving ? 0
                         : own   ? tracer.own_blocker_slot(x + i, y)
                                 : tracer.nearest_blocker_slot(x + i, y);

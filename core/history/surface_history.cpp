@@ -103,15 +103,16 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
                            SurfaceHistory& out) {
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
+    SlotFinder slot(frames.scene);
     int slots[kFollowBlock] = {};
     std::uint8_t same[kFollowBlock] = {}, wanted[kFollowBlock];
     FollowedBlock followed{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
       for (int c = 0; c < 2; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
+      const std::uint32_t* id = now.id[0].row(y) + x;
       if (frames.scene.slot_count() > 1)
-        for (int i = 0; i < pixels.count; ++i)
-          slots[i] = frames.scene.slot_of(now.id[0].at(x + i, y));
+        for (int i = 0; i < pixels.count; ++i) slots[i] = slot.of(id[i]);
       same_surface_block(now, frames.previous, x, y, pixels.count, same);
       if (keep_still(frames, given_motion == nullptr, slots, same, x, y, pixels.count, wanted, out))
         continue;

@@ -55,6 +55,16 @@ Taps rescue_taps_on_any_surface(const Guides& previous, float x, float y);
 /// Taps at pixel (x, y) itself, weight 1.
 Taps identity_taps(const Guides& previous, int x, int y);
 
+/// The taps of `first`, where there are none those of `second`; written to `own` only if the block
+/// has both kinds.
+inline const Taps* preferred_taps(const Taps* first, const Taps* second, int count, Taps* own) {
+  bool mixed = false;
+  for (int i = 0; i < count; ++i) mixed |= !first[i].any() && second[i].any();
+  if (!mixed) return first;
+  for (int i = 0; i < count; ++i) own[i] = first[i].any() ? first[i] : second[i];
+  return own;
+}
+
 /// The weighted value of a channel at `taps`.
 inline float gather(ChannelView<const float> channel, const Taps& taps) {
   const int dx = channel.width > 1 ? 1 : 0;

@@ -62,10 +62,10 @@ HOLDFAST_KERNEL(measure_block, LobeBlock)
 
 /// Most of an image may have no reflections at all.
 bool any_sample(const LobeBlock& block) {
-  bool any = false;
-  for (const float* direction : block.direction)
-    for (int i = 0; i < block.pixels.count; ++i) any |= direction[i] != 0.0f;
-  return any;
+  return std::any_of(block.direction, block.direction + 3, [&](const float* direction) {
+    return std::any_of(direction, direction + block.pixels.count,
+                       [](float d) { return d != 0.0f; });
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/kernels/random.h"
 #include "core/kernels/variants.h"
 #include "core/motion/lobe_spread.h"
 
@@ -36,8 +37,8 @@ HOLDFAST_INLINE void follow_images(const ReflectionFollow& a) {
               *nz = pixels.normal[2];
   const float *dx = a.direction[0], *dy = a.direction[1], *dz = a.direction[2], *hit_m = a.hit_m;
   constexpr float kMost = std::numeric_limits<float>::max();
-  FollowedBlock& out = a.out.then;
-  float *now_x = a.out.x, *now_y = a.out.y;
+  FollowedBlock& out = a.out;
+  float *now_x = a.now_x, *now_y = a.now_y;
 #pragma GCC ivdep
   for (int i = 0; i < pixels.count; ++i) {
     const Float3 point = position(pixels, depth, i), normal{nx[i], ny[i], nz[i]};
@@ -67,7 +68,7 @@ HOLDFAST_INLINE void follow_images(const ReflectionFollow& a) {
 }
 
 HOLDFAST_INLINE void images_body(const ReflectionFollow& a) {
-  a.relative ? follow_images<true>(a) : follow_images<false>(a);
+  a.now_x != nullptr ? follow_images<true>(a) : follow_images<false>(a);
 }
 
 HOLDFAST_INLINE void spread_body(const ReflectionSpread& a) {
@@ -93,12 +94,25 @@ HOLDFAST_INLINE void spread_body(const ReflectionSpread& a) {
   }
 }
 
+HOLDFAST_INLINE void pairs_body(const PairDraws& a) {
+  const std::uint64_t key = a.key, first = a.first;
+  float *u = a.u, *v = a.v;
+#pragma GCC ivdep
+  for (int i = 0; i < a.count; ++i) {
+    const UniformPair pair = uniform_pair(key ^ mix_bits(first + static_cast<std::uint64_t>(i)));
+    u[i] = pair.u;
+    v[i] = pair.v;
+  }
+}
+
 HOLDFAST_KERNEL(images, ReflectionFollow)
 HOLDFAST_KERNEL(spread, ReflectionSpread)
+HOLDFAST_KERNEL(pairs, PairDraws)
 
 }  // namespace
 
 void follow_reflection(const ReflectionFollow& block) noexcept { images(block); }
 void spread_reflection(const ReflectionSpread& block) noexcept { spread(block); }
+void draw_pairs(const PairDraws& block) noexcept { pairs(block); }
 
 }  // namespace holdfast

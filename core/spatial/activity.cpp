@@ -57,6 +57,17 @@ HOLDFAST_INLINE void tile_ranges_body(const TileRanges& a) {
 
 HOLDFAST_KERNEL(tile_ranges, TileRanges)
 
+constexpr int kBlock = 64;  // tiles of a row
+
+/// Widens ranges to those of other tiles.
+void widen(const float* __restrict from_low, const float* __restrict from_high, int count,
+           float* __restrict low, float* __restrict high) {
+  for (int i = 0; i < count; ++i) {
+    low[i] = from_low[i] < low[i] ? from_low[i] : low[i];
+    high[i] = from_high[i] > high[i] ? from_high[i] : high[i];
+  }
+}
+
 }  // namespace
 
 ActivityMap::ActivityMap(int width, int height)
@@ -88,26 +99,29 @@ void ActivityMap::measure_ranges(const Guides& guides, ChannelView<const float> 
 void ActivityMap::mark(int halo, int zone, float tolerance) {
   const int reach_x = tiles(halo, kTileWidth), reach_y = tiles(halo, kTileHeight);
   for_each_index(0, rows_, 1, [&](int row) {
-    for (int column = 0; column < columns_; ++column) {
-      const int first = std::max(column - reach_x, 0);
-      const int last = std::min(column + reach_x, columns_ - 1);
-      row_low_[at(row, column)] =
-          *std::min_element(&low_[at(row, first)], &low_[at(row, last)] + 1);
-      row_high_[at(row, column)] =
-          *std::max_element(&high_[at(row, first)], &high_[at(row, last)] + 1);
+    const float *low = &low_[at(row, 0)], *high = &high_[at(row, 0)];
+    float *row_low = &row_low_[at(row, 0)], *row_high = &row_high_[at(row, 0)];
+    std::copy_n(low, columns_, row_low);
+    std::copy_n(high, columns_, row_high);
+    for (int reach = 1; reach <= std::min(reach_x, columns_ - 1); ++reach) {
+      const int both = columns_ - reach;  // tiles that have another one so far to one side
+      widen(low + reach, high + reach, both, row_low, row_high);
+      widen(low, high, both, row_low + reach, row_high + reach);
     }
   });
   for_each_index(0, rows_, 1, [&](int row) {
     const int first = std::max(row - reach_y, 0), last = std::min(row + reach_y, rows_ - 1);
-    for (int column = 0; column < columns_; ++column) {
-      float low = kInfinity, high = -kInfinity;
-      for (int r = first; r <= last; ++r) {
-        low = std::min(low, row_low_[at(r, column)]);
-        high = std::max(high, row_high_[at(r, column)]);
-      }
-      std::uint8_t& narrowest = zone_[at(row, column)];
-      if (high - low > tolerance * std::max(high, -low) && narrowest > zone)
-        narrowest = static_cast<std::uint8_t>(zone);
+    for (int column = 0; column < columns_; column += kBlock) {
+      const int count = std::min(kBlock, columns_ - column);
+      float low[kBlock], high[kBlock];
+      std::copy_n(&row_low_[at(first, column)], count, low);
+      std::copy_n(&row_high_[at(first, column)], count, high);
+      for (int r = first + 1; r <= last; ++r)
+        widen(&row_low_[at(r, column)], &row_high_[at(r, column)], count, low, high);
+      std::uint8_t* narrowest = &zone_[at(row, column)];
+      for (int i = 0; i < count; ++i)
+        if (high[i] - low[i] > tolerance * std::max(high[i], -low[i]) && narrowest[i] > zone)
+          narrowest[i] = static_cast<std::uint8_t>(zone);
     }
   });
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/kernels/random.h"
 #include "core/motion/glossy_motion.h"
 #include "core/motion/shadow_falloff.h"
 #include "core/motion/shadow_motion.h"
@@ -68,7 +69,8 @@ TEST(ReflectBlock, ImagesAgreeWithTheOracle) {
   const glm::mat4 rounded(pixel);
   for (const Isa isa : available_isas()) {
     select_isa(isa);
-    ReflectedBlock got;
+    FollowedBlock got;
+    float now_x[kSize], now_y[kSize];
     follow_reflection({BlockPixels(row.guides, 0, 1, kSize),
                        moved_by(surface),
                        moved_by(hit),
@@ -76,8 +78,9 @@ TEST(ReflectBlock, ImagesAgreeWithTheOracle) {
                        rounded,
                        {row.direction[0], row.direction[1], row.direction[2]},
                        row.hit_m,
-                       true,
-                       got});
+                       got,
+                       now_x,
+                       now_y});
     int compared = 0;
     for (int i = 0; i < kSize; ++i) {
       const glm::dvec3 point = row.point(i), normal(row.guides.normal_at(i, 1));
@@ -88,15 +91,30 @@ TEST(ReflectBlock, ImagesAgreeWithTheOracle) {
           project(pixel, virtual_image(hit_then, then, glm::dmat3(surface) * normal));
       if (std::min(std::abs(image.depth), std::abs(image_then.depth)) < 0.1) continue;
       const bool found = row.sampled(i) && image.in_front && image_then.in_front;
-      ASSERT_EQ(got.then.found[i] > 0.0f, found) << isa_name(isa) << ", lane " << i;
+      ASSERT_EQ(got.found[i] > 0.0f, found) << isa_name(isa) << ", lane " << i;
       for (int axis = 0; axis < 3; ++axis)
-        ASSERT_NEAR(double(got.then.point[axis][i]), then[axis], 2e-5);
+        ASSERT_NEAR(double(got.point[axis][i]), then[axis], 2e-5);
       if (!found) continue;
-      expect_place(got.then.x[i], got.then.y[i], image_then, isa, i);
-      expect_place(got.x[i], got.y[i], image, isa, i);
+      expect_place(got.x[i], got.y[i], image_then, isa, i);
+      expect_place(now_x[i], now_y[i], image, isa, i);
       ++compared;
     }
     EXPECT_GT(compared, kSize / 2);
+  }
+}
+
+TEST(ReflectBlock, PairsAreThoseOfTheirPixelsOnEveryInstructionSet) {
+  const test::IsaGuard guard;
+  const std::uint64_t key = mix_bits(5), first = (std::uint64_t{7} << 32) | 1000;
+  for (const Isa isa : available_isas()) {
+    select_isa(isa);
+    float u[kSize], v[kSize];
+    draw_pairs({key, first, kSize, u, v});
+    for (int i = 0; i < kSize; ++i) {
+      const UniformPair want = uniform_pair(key ^ mix_bits(first + static_cast<std::uint64_t>(i)));
+      ASSERT_EQ(u[i], want.u) << isa_name(isa) << ", lane " << i;
+      ASSERT_EQ(v[i], want.v) << isa_name(isa) << ", lane " << i;
+    }
   }
 }
 
