@@ -28,7 +28,10 @@ glm::dmat4 Transform::matrix() const {
 }
 
 Transform look_at(const glm::dvec3& eye, const glm::dvec3& target) {
-  const glm::dvec3 forward = glm::normalize(target - eye);
+  glm::dvec3 way = target - eye;
+  if (!std::isnormal(glm::dot(way, way)))
+    way /= std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z)});
+  const glm::dvec3 forward = glm::normalize(way);
   const glm::dvec3 up = std::abs(forward.y) > 0.9999 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   Transform out;
   out.translation = eye;

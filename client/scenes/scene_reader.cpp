@@ -28,6 +28,10 @@ Transform read_transform(StrictObject& in) {
     const glm::dvec3 target = vector_of<3>(in, "lookAt", *value);
     if (target == out.translation)
       throw InputError(in.subject("lookAt"), "must differ from translation", json_excerpt(*value));
+    if (const glm::dvec3 way = target - out.translation;
+        !std::isfinite(way.x) || !std::isfinite(way.y) || !std::isfinite(way.z))
+      throw InputError(in.subject("lookAt"), "must be a finite way from translation",
+                       json_excerpt(*value));
     out.rotation = look_at(out.translation, target).rotation;
   }
   out.scale = vector_or<3>(in, "scale", out.scale);

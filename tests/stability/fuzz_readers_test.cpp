@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -71,6 +72,24 @@ TEST(HostileJson, LongTextIsCutShortInMessages) {
     } catch (const InputError& error) {
       EXPECT_LT(std::string(error.what()).size(), 1000u);
     }
+}
+
+TEST(HostileJson, LookingAlongAWayOfAnyLengthIsADirection) {
+  const auto camera = [](const std::string& place, const std::string& target) {
+    const std::string text =
+        R"({"format":"holdfast-scene","version":1,"name":"far","camera":{"motion":{"translation":[)" +
+        place + R"(],"lookAt":[)" + target +
+        R"(]}},"objects":[{"id":1,"parts":[{"shape":"quad","size":[2,3]}]}]})";
+    return scenes::scene_from_json(text, "far.json").camera.motion.keys.front().transform;
+  };
+  for (const char* length : {"5e-324", "1e-200", "1", "1e200", "1.7e308"}) {
+    const std::string zero = "0,0,0", place = std::string("0,") + length + "," + length;
+    const glm::dvec3 forward = glm::dmat3(camera(place, zero).matrix()) * glm::dvec3(0, 0, -1);
+    EXPECT_NEAR(forward.y, -std::sqrt(0.5), 1e-12) << length;
+    EXPECT_NEAR(forward.z, -std::sqrt(0.5), 1e-12) << length;
+  }
+  expect_input_error([&] { camera("0,0,1.7e308", "0,0,-1.7e308"); },
+                     {"lookAt", "must be a finite way from translation"});
 }
 
 TEST(HostileJson, SizeBeyondTheLimitIsRefusedBeforeAnythingIsAllocated) {
