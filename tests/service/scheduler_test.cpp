@@ -137,10 +137,11 @@ TEST(Scheduler, LetsThoseWhoKeepUpGoInTheOrderInWhichTheyCameHoweverTheirFramesD
     const auto dear = std::make_shared<Strand>(), cheap = std::make_shared<Strand>();
     scheduler.post(dear, [&] { clock.pass(30ms); });
     scheduler.post(cheap, [&] { clock.pass(1ms); });
-    std::latch posted(1), both(2);
+    std::latch posted(1), both(2), held(1);
     for (const auto& strand : {dear, cheap}) scheduler.post(strand, [&] { both.count_down(); });
     both.wait();
-    scheduler.post(std::make_shared<Strand>(), [&] { posted.wait(); });
+    scheduler.post(std::make_shared<Strand>(), [&] { held.count_down(), posted.wait(); });
+    held.wait();  // the jobs before are over and booked
     scheduler.post(dear, [&] { order += 'd'; });
     scheduler.post(cheap, [&] { order += 'c'; });
     posted.count_down();
