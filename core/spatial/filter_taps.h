@@ -182,34 +182,46 @@ HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>
   if constexpr (C > 6) s.value[6] += w * t.in[6][q];
 }
 
-/// Adds the tap at row position `q`; `bits`: weight_bits of its kernel weight.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void add_tap(const TapRow& t, int q, const TapPlace& at, float bits,
-                             const FilterPixel& p, FilterSums<C>& s) {
+/// What the weight of the tap at row position `q` falls with, by e to its power.
+template <bool kLuminance, bool kFootprint>
+HOLDFAST_INLINE float exponent_of(const TapRow& t, int q, const TapPlace& at,
+                                  const FilterPixel& p) {
   const float e = t.depth[q] * at.plane + at.offset;
   const float turned = t.normal_power - p.nx * t.nx[q] - p.ny * t.ny[q] - p.nz * t.nz[q];
   float exponent = abs_of(e) + positive_part(turned);
   if constexpr (kLuminance) exponent += abs_of(t.luminance[q] - p.luminance) * p.inverse_sigma;
   if constexpr (kFootprint) exponent += at.footprint;
-  add_weighted<C, kSpread>(t, q, weight_exp(bits, exponent), s);
+  return exponent;
 }
 
-/// Adds the taps of one row, whose kernel's weights have these bits by distance.
+/// Adds the taps of one row, whose kernel's weights have these bits by distance. All exponents come
+/// first, then all weights: a processor looks ahead over some hundred instructions, and a tap is a
+/// chain of 40, so that tap after tap it would wait.
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint, int kRadius>
 HOLDFAST_INLINE void add_row_taps(const TapRow& t, int i, int step, const float (&bits)[3],
                                   const FilterPixel& p, FilterSums<C>& s) {
   const float dx = static_cast<float>(step);
+  const int before = i - step, after = i + step, first = before - step, last = after + step;
+  float far_before = 0.0f, far_after = 0.0f;
   if constexpr (kRadius > 1)
-    add_tap<C, kLuminance, kSpread, kFootprint>(t, i - 2 * step,
-                                                place_of<kFootprint>(p, -2.0f * dx), bits[2], p, s);
-  add_tap<C, kLuminance, kSpread, kFootprint>(t, i - step, place_of<kFootprint>(p, -dx), bits[1], p,
-                                              s);
-  add_tap<C, kLuminance, kSpread, kFootprint>(t, i, own_place<kFootprint>(p), bits[0], p, s);
-  add_tap<C, kLuminance, kSpread, kFootprint>(t, i + step, place_of<kFootprint>(p, dx), bits[1], p,
-                                              s);
+    far_before =
+        exponent_of<kLuminance, kFootprint>(t, first, place_of<kFootprint>(p, -2.0f * dx), p);
+  float near_before =
+      exponent_of<kLuminance, kFootprint>(t, before, place_of<kFootprint>(p, -dx), p);
+  float own = exponent_of<kLuminance, kFootprint>(t, i, own_place<kFootprint>(p), p);
+  float near_after = exponent_of<kLuminance, kFootprint>(t, after, place_of<kFootprint>(p, dx), p);
   if constexpr (kRadius > 1)
-    add_tap<C, kLuminance, kSpread, kFootprint>(t, i + 2 * step, place_of<kFootprint>(p, 2.0f * dx),
-                                                bits[2], p, s);
+    far_after = exponent_of<kLuminance, kFootprint>(t, last, place_of<kFootprint>(p, 2.0f * dx), p);
+  if constexpr (kRadius > 1) far_before = weight_exp(bits[2], far_before);
+  near_before = weight_exp(bits[1], near_before);
+  own = weight_exp(bits[0], own);
+  near_after = weight_exp(bits[1], near_after);
+  if constexpr (kRadius > 1) far_after = weight_exp(bits[2], far_after);
+  if constexpr (kRadius > 1) add_weighted<C, kSpread>(t, first, far_before, s);
+  add_weighted<C, kSpread>(t, before, near_before, s);
+  add_weighted<C, kSpread>(t, i, own, s);
+  add_weighted<C, kSpread>(t, after, near_after, s);
+  if constexpr (kRadius > 1) add_weighted<C, kSpread>(t, last, far_after, s);
 }
 
 }  // namespace holdfast
