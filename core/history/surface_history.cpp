@@ -9,22 +9,40 @@
 namespace holdfast {
 namespace {
 
-/// The taps and the motion of the pixels from (x, y) on that are `found`. `same`: both frames show
-/// the same surface at a pixel.
-void take(const FramePair& frames, const FollowedBlock& found, const std::uint8_t* same, int x,
-          int y, int count, SurfaceHistory& out) {
-  Taps taps[kFollowBlock];
-  find_block_taps({frames.previous, found, frames.now.id[0].row(y) + x, count, taps});
+/// A block of a row on its way to the previous frame.
+struct Lanes {
+  int slot[kFollowBlock] = {};  ///< of the surfaces
+  std::uint8_t same[kFollowBlock], wanted[kFollowBlock];
+  FollowedBlock some, followed;
+};
+
+/// The motion of those that are `found`; returns whether any of them has not moved.
+bool take_motion(const FollowedBlock& found, int x, int y, int count, SurfaceHistory& out) {
+  float *motion_x = out.motion[0].row(y) + x, *motion_y = out.motion[1].row(y) + x;
+  const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
+  int stay = 0;
   for (int i = 0; i < count; ++i) {
-    if (found.found[i] == 0.0f) continue;
-    const float motion_x = found.x[i] - (static_cast<float>(x + i) + 0.5f);
-    const float motion_y = found.y[i] - (static_cast<float>(y) + 0.5f);
-    out.taps[0].at(x + i, y) = motion_x == 0.0f && motion_y == 0.0f && same[i] != 0
-                                   ? identity_taps(frames.previous, x + i, y)
-                                   : taps[i];
-    out.motion[0].at(x + i, y) = motion_x;
-    out.motion[1].at(x + i, y) = motion_y;
+    const bool any = found.found[i] != 0.0f;
+    motion_x[i] = any ? found.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
+    motion_y[i] = any ? found.y[i] - row : 0.0f;
+    stay |= static_cast<int>(any) & static_cast<int>(motion_x[i] == 0.0f) &
+            static_cast<int>(motion_y[i] == 0.0f);
   }
+  return stay != 0;
+}
+
+/// The taps of those that are `found`, of others none. Where both frames show the same surface and
+/// it has not moved they are the pixel itself.
+void take_taps(const FramePair& frames, const FollowedBlock& found, bool any_stays, int x, int y,
+               int count, Taps* taps, const SurfaceHistory& out) {
+  find_block_taps({frames.previous, found, frames.now.id[0].row(y) + x, count, taps});
+  if (!any_stays) return;
+  std::uint8_t same[kFollowBlock];
+  same_surface_block(frames.now, frames.previous, x, y, count, same);
+  const float *motion_x = out.motion[0].row(y) + x, *motion_y = out.motion[1].row(y) + x;
+  for (int i = 0; i < count; ++i)
+    if (found.found[i] != 0.0f && motion_x[i] == 0.0f && motion_y[i] == 0.0f && same[i] != 0)
+      taps[i] = identity_taps(frames.previous, x + i, y);
 }
 
 /// Puts the client's motion in place of the rigid one.
@@ -47,33 +65,42 @@ void stay(int x, int y, int count, FollowedBlock& found) {
   }
 }
 
-/// Follows the row's pixels from x on that lie on `object`, whose `wanted` is cleared.
-void follow_object(const FramePair& frames, const Plane* given_motion, int slot, const int* slots,
-                   const BlockPixels& pixels, int x, int y, std::uint8_t* wanted,
-                   FollowedBlock& followed) {
-  const ObjectMotion<float>& object = frames.scene.object(slot);
-  FollowedBlock found;
-  if (object.traceable || given_motion != nullptr) {
-    follow_surface({pixels, object, found});
-    if (given_motion != nullptr)
-      override_motion(*given_motion, x, y, pixels.count, found);
-    else if (object.at_rest)
-      stay(x, y, pixels.count, found);
-  } else {
+/// Follows all pixels of a block as parts of one object.
+void follow_object(const ObjectMotion<float>& object, const Plane* given_motion,
+                   const BlockPixels& pixels, int x, int y, FollowedBlock& found) {
+  if (!object.traceable && given_motion == nullptr) {
     std::fill_n(found.found, pixels.count, 0.0f);
+    return;
   }
-  for (int i = 0; i < pixels.count; ++i) {
-    if (!wanted[i] || slots[i] != slot) continue;
-    wanted[i] = 0;
-    if (found.found[i] != 0.0f) copy_lane(found, i, followed, i);
+  follow_surface({pixels, object, found});
+  if (given_motion != nullptr)
+    override_motion(*given_motion, x, y, pixels.count, found);
+  else if (object.at_rest)
+    stay(x, y, pixels.count, found);
+}
+
+/// Follows a block of several objects, one after the other, and takes what is `wanted` of each.
+void follow_objects(const FramePair& frames, const Plane* given_motion, const BlockPixels& pixels,
+                    int x, int y, Lanes& lanes) {
+  std::fill_n(lanes.followed.found, pixels.count, 0.0f);
+  for (int first = 0; first < pixels.count; ++first) {
+    if (!lanes.wanted[first]) continue;
+    const int slot = lanes.slot[first];
+    follow_object(frames.scene.object(slot), given_motion, pixels, x, y, lanes.some);
+    for (int i = first; i < pixels.count; ++i) {
+      if (!lanes.wanted[i] || lanes.slot[i] != slot) continue;
+      lanes.wanted[i] = 0;
+      if (lanes.some.found[i] != 0.0f) copy_lane(lanes.some, i, lanes.followed, i);
+    }
   }
 }
 
 /// Pixels that stand still (`rigid`: no client's motion says otherwise) and show the same surface
 /// as before keep their place; returns whether all of the block's surfaces do. `wanted` is set for
 /// the others.
-bool keep_still(const FramePair& frames, bool rigid, const int* slots, const std::uint8_t* same,
-                int x, int y, int count, std::uint8_t* wanted, SurfaceHistory& out) {
+bool keep_still(const FramePair& frames, bool rigid, int x, int y, int count, Lanes& lanes,
+                SurfaceHistory& out) {
+  same_surface_block(frames.now, frames.previous, x, y, count, lanes.same);
   const float* depth = frames.now.depth().row(y) + x;
   const SceneMotion& scene = frames.scene;
   Taps* taps = out.taps[0].row(y) + x;
@@ -82,9 +109,9 @@ bool keep_still(const FramePair& frames, bool rigid, const int* slots, const std
   int left = 0;
   for (int i = 0; i < count; ++i) {
     const bool surface = depth[i] > 0.0f;
-    const bool still = rigid && same[i] != 0 && scene.object(slots[i]).at_rest;
-    wanted[i] = surface && !still;
-    left += wanted[i];
+    const bool still = rigid && lanes.same[i] != 0 && scene.object(lanes.slot[i]).at_rest;
+    lanes.wanted[i] = surface && !still;
+    left += lanes.wanted[i];
     if (!surface || !still) {
       taps[i] = Taps{};
     } else if (x + i < last_column) {
@@ -97,6 +124,42 @@ bool keep_still(const FramePair& frames, bool rigid, const int* slots, const std
   return left == 0;
 }
 
+/// Finds the objects of a block's pixels; returns whether they are one.
+bool find_slots(const FramePair& frames, int x, int y, int count, SlotFinder& slot, Lanes& lanes) {
+  if (frames.scene.slot_count() == 1) return true;
+  const std::uint32_t* id = frames.now.id[0].row(y) + x;
+  for (int i = 0; i < count; ++i) lanes.slot[i] = slot.of(id[i]);
+  return std::all_of(lanes.slot, lanes.slot + count, [&](int s) { return s == lanes.slot[0]; });
+}
+
+/// A block of pixels that move with one object.
+void trace_moving(const FramePair& frames, const Plane* given_motion, const BlockPixels& pixels,
+                  int x, int y, Lanes& lanes, SurfaceHistory& out) {
+  FollowedBlock& found = lanes.followed;
+  follow_object(frames.scene.object(lanes.slot[0]), given_motion, pixels, x, y, found);
+  for (int i = 0; i < pixels.count; ++i)
+    found.found[i] = pixels.depth[i] > 0.0f ? found.found[i] : 0.0f;
+  const bool any_stays = take_motion(found, x, y, pixels.count, out);
+  take_taps(frames, found, any_stays, x, y, pixels.count, out.taps[0].row(y) + x, out);
+}
+
+/// Any other block.
+void trace_mixed(const FramePair& frames, const Plane* given_motion, const BlockPixels& pixels,
+                 int x, int y, Lanes& lanes, SurfaceHistory& out) {
+  const bool all_still =
+      keep_still(frames, given_motion == nullptr, x, y, pixels.count, lanes, out);
+  if (all_still) {
+    for (int c = 0; c < 2; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
+    return;
+  }
+  follow_objects(frames, given_motion, pixels, x, y, lanes);
+  const bool any_stays = take_motion(lanes.followed, x, y, pixels.count, out);
+  Taps taps[kFollowBlock];
+  take_taps(frames, lanes.followed, any_stays, x, y, pixels.count, taps, out);
+  for (int i = 0; i < pixels.count; ++i)
+    if (lanes.followed.found[i] != 0.0f) out.taps[0].at(x + i, y) = taps[i];
+}
+
 }  // namespace
 
 void trace_surface_history(const FramePair& frames, const Plane* given_motion,
@@ -104,23 +167,14 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
     SlotFinder slot(frames.scene);
-    int slots[kFollowBlock] = {};
-    std::uint8_t same[kFollowBlock] = {}, wanted[kFollowBlock];
-    FollowedBlock followed{};
+    Lanes lanes;
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
-      for (int c = 0; c < 2; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
-      const std::uint32_t* id = now.id[0].row(y) + x;
-      if (frames.scene.slot_count() > 1)
-        for (int i = 0; i < pixels.count; ++i) slots[i] = slot.of(id[i]);
-      same_surface_block(now, frames.previous, x, y, pixels.count, same);
-      if (keep_still(frames, given_motion == nullptr, slots, same, x, y, pixels.count, wanted, out))
-        continue;
-      std::fill_n(followed.found, pixels.count, 0.0f);
-      for (int i = 0; i < pixels.count; ++i)
-        if (wanted[i])
-          follow_object(frames, given_motion, slots[i], slots, pixels, x, y, wanted, followed);
-      take(frames, followed, same, x, y, pixels.count, out);
+      const bool one = find_slots(frames, x, y, pixels.count, slot, lanes);
+      if (one && (given_motion != nullptr || !frames.scene.object(lanes.slot[0]).at_rest))
+        trace_moving(frames, given_motion, pixels, x, y, lanes, out);
+      else
+        trace_mixed(frames, given_motion, pixels, x, y, lanes, out);
     }
   });
 }

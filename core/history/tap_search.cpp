@@ -16,10 +16,10 @@ struct FoundTaps {
   std::int32_t lost[kFollowBlock];                ///< 1: none of the four is valid
 };
 
-/// What the previous frame shows at one of the four pixels.
+/// What the previous frame shows at the four pixels; depth 0 where there is none.
 struct Shown {
-  float depth[kFollowBlock], normal[3][kFollowBlock];
-  std::uint32_t id[kFollowBlock];
+  float depth[4][kFollowBlock], normal[4][3][kFollowBlock];
+  std::uint32_t id[4][kFollowBlock];
 };
 
 struct SearchBlock {
@@ -76,41 +76,83 @@ HOLDFAST_INLINE void place_taps(const TapSearch& a, FoundTaps& out) {
   }
 }
 
-/// Takes the weight from the pixels at (dx, dy) of the four that show another receiver.
-HOLDFAST_INLINE void test_receivers(const TapSearch& a, int dx, int dy, FoundTaps& out) {
+/// Reads what the previous frame shows.
+HOLDFAST_INLINE void look(const TapSearch& a, const TapLanes& lanes, Shown& out) {
   const Guides& g = a.previous;
-  const std::ptrdiff_t at = dy * g.depth().stride + dx;
-  Shown shown;
-  fetch(out.lanes, g.depth().data + at, shown.depth);
-  for (int axis = 0; axis < 3; ++axis)
-    fetch(out.lanes, g.normal(axis).data + at, shown.normal[axis]);
-  fetch(out.lanes, g.id[0].data + at, shown.id);
-  const PixelRays<float>& rays = g.rays;
-  const float l0x = rays.lateral_0.x, l0y = rays.lateral_0.y, l0z = rays.lateral_0.z;
-  const float lxx = rays.lateral_x.x, lxy = rays.lateral_x.y, lxz = rays.lateral_x.z;
-  const float lyx = rays.lateral_y.x, lyy = rays.lateral_y.y, lyz = rays.lateral_y.z;
-  const float fx = rays.forward.x, fy = rays.forward.y, fz = rays.forward.z;
-  const float near_w = rays.near_weight, far_w = rays.far_weight;
-  const auto angle = static_cast<float>(g.view.pixel_angle);
-  const float centre_x = static_cast<float>(dx) + 0.5f, centre_y = static_cast<float>(dy) + 0.5f;
+  for (int k = 0; k < 4; ++k) {
+    const int dx = k % 2, dy = k / 2;
+    if (dx >= g.view.width || dy >= g.view.height) {
+      for (int i = 0; i < a.count; ++i) out.depth[k][i] = 0.0f;
+      continue;
+    }
+    const std::ptrdiff_t at = dy * g.depth().stride + dx;
+    fetch(lanes, g.depth().data + at, out.depth[k]);
+    for (int axis = 0; axis < 3; ++axis)
+      fetch(lanes, g.normal(axis).data + at, out.normal[k][axis]);
+    fetch(lanes, g.id[0].data + at, out.id[k]);
+  }
+}
+
+/// A receiver and what its plane makes of the previous frame's rays.
+struct SoughtPlane {
+  Float3 normal;
+  float offset, forward, near_weight, far_weight, tolerance;
+  std::uint32_t id;
+};
+
+/// The weight that a pixel keeps whose ray is `lateral` along the receiver's normal: `TapTest` of
+/// taps.cpp.
+HOLDFAST_INLINE float kept_weight(const SoughtPlane& p, float lateral, float depth, float nx,
+                                  float ny, float nz, std::uint32_t id, float weight) {
+  const float scale = p.near_weight + p.far_weight * depth;
+  const float distance = abs_of(scale * lateral + depth * p.forward - p.offset);
+  const float cosine = dot(p.normal, {nx, ny, nz});
+  const float on_plane = distance <= p.tolerance * scale ? weight : 0.0f;
+  const float facing = cosine >= kTapNormalCosine ? on_plane : 0.0f;
+  const float surface = depth > 0.0f ? facing : 0.0f;
+  return id == p.id ? surface : 0.0f;
+}
+
+/// Takes the weight from those of the four pixels that show another receiver, and normalises what
+/// is left.
+HOLDFAST_INLINE void test_receivers(const TapSearch& a, const Shown& shown, FoundTaps& out) {
+  const PixelRays<float>& rays = a.previous.rays;
+  const Float3 lateral_0{rays.lateral_0.x, rays.lateral_0.y, rays.lateral_0.z},
+      lateral_x{rays.lateral_x.x, rays.lateral_x.y, rays.lateral_x.z},
+      lateral_y{rays.lateral_y.x, rays.lateral_y.y, rays.lateral_y.z},
+      forward{rays.forward.x, rays.forward.y, rays.forward.z};
+  const float near_weight = rays.near_weight, far_weight = rays.far_weight;
+  const float tolerance = tap_tolerance(a.previous);
   const float *px = a.followed.point[0], *py = a.followed.point[1], *pz = a.followed.point[2];
   const float *nx = a.followed.normal[0], *ny = a.followed.normal[1], *nz = a.followed.normal[2];
-  float* weight = out.lanes.weight[2 * dy + dx];
+  float *w0 = out.lanes.weight[0], *w1 = out.lanes.weight[1], *w2 = out.lanes.weight[2],
+        *w3 = out.lanes.weight[3];
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
     const Float3 n{nx[i], ny[i], nz[i]};
-    const float plane = dot(n, {px[i], py[i], pz[i]});
-    const float d = shown.depth[i], scale = near_w + far_w * d;
-    const float x = out.column[i] + centre_x, y = out.row[i] + centre_y;
-    const Float3 point{scale * (l0x + x * lxx + y * lyx) + d * fx,
-                       scale * (l0y + x * lxy + y * lyy) + d * fy,
-                       scale * (l0z + x * lxz + y * lyz) + d * fz};
-    const float distance = abs_of(dot(n, point) - plane);
-    const float cosine = dot(n, {shown.normal[0][i], shown.normal[1][i], shown.normal[2][i]});
-    const float on_plane = distance <= kTapPlaneTolerancePx * (angle * scale) ? weight[i] : 0.0f;
-    const float facing = cosine >= kTapNormalCosine ? on_plane : 0.0f;
-    const float surface = d > 0.0f ? facing : 0.0f;
-    weight[i] = shown.id[i] == a.id[i] ? surface : 0.0f;
+    const SoughtPlane p{
+        n,      dot(n, {px[i], py[i], pz[i]}), dot(n, forward), near_weight, far_weight, tolerance,
+        a.id[i]};
+    const float start = dot(n, lateral_0), across = dot(n, lateral_x), down = dot(n, lateral_y);
+    const float x0 = out.column[i] + 0.5f, y0 = out.row[i] + 0.5f;
+    const float left = start + x0 * across, right = start + (x0 + 1.0f) * across;
+    const float upper = y0 * down, lower = (y0 + 1.0f) * down;
+    const float k0 =
+        kept_weight(p, left + upper, shown.depth[0][i], shown.normal[0][0][i],
+                    shown.normal[0][1][i], shown.normal[0][2][i], shown.id[0][i], w0[i]);
+    const float k1 =
+        kept_weight(p, right + upper, shown.depth[1][i], shown.normal[1][0][i],
+                    shown.normal[1][1][i], shown.normal[1][2][i], shown.id[1][i], w1[i]);
+    const float k2 =
+        kept_weight(p, left + lower, shown.depth[2][i], shown.normal[2][0][i],
+                    shown.normal[2][1][i], shown.normal[2][2][i], shown.id[2][i], w2[i]);
+    const float k3 =
+        kept_weight(p, right + lower, shown.depth[3][i], shown.normal[3][0][i],
+                    shown.normal[3][1][i], shown.normal[3][2][i], shown.id[3][i], w3[i]);
+    w0[i] = k0;
+    w1[i] = k1;
+    w2[i] = k2;
+    w3[i] = k3;
   }
 }
 
@@ -131,20 +173,20 @@ HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
     const float sum = w0[i] + w1[i] + w2[i] + w3[i];
     const float kept = sum > kLeastTapSum ? 1.0f : 0.0f, divisor = sum > kLeastTapSum ? sum : 1.0f;
     out.lost[i] = sum > kLeastTapSum ? 0 : out.lost[i];
-    w0[i] = kept * w0[i] / divisor;
-    w1[i] = kept * w1[i] / divisor;
-    w2[i] = kept * w2[i] / divisor;
-    w3[i] = kept * w3[i] / divisor;
+    const float inverse = kept / divisor;
+    w0[i] *= inverse;
+    w1[i] *= inverse;
+    w2[i] *= inverse;
+    w3[i] *= inverse;
   }
 }
 
 HOLDFAST_INLINE void receivers_body(const SearchBlock& a) {
-  const int columns = min_of(a.search.previous.view.width, 2);
-  const int rows = min_of(a.search.previous.view.height, 2);
   place_taps(a.search, a.out);
   find_runs(a.out.lanes, a.search.previous.depth());
-  for (int dy = 0; dy < rows; ++dy)
-    for (int dx = 0; dx < columns; ++dx) test_receivers(a.search, dx, dy, a.out);
+  Shown shown;
+  look(a.search, a.out.lanes, shown);
+  test_receivers(a.search, shown, a.out);
   normalise_weights(a.search.count, a.out);
 }
 

@@ -11,8 +11,12 @@ class TapTest {
   TapTest(const Guides& previous, const Receiver& receiver)
       : previous_(previous),
         receiver_(receiver),
-        plane_(glm::dot(receiver.normal, receiver.point)),
-        angle_(static_cast<float>(previous.view.pixel_angle)) {}
+        offset_(glm::dot(receiver.normal, receiver.point)),
+        tolerance_(tap_tolerance(previous)),
+        start_(glm::dot(receiver.normal, previous.rays.lateral_0)),
+        across_(glm::dot(receiver.normal, previous.rays.lateral_x)),
+        down_(glm::dot(receiver.normal, previous.rays.lateral_y)),
+        forward_(glm::dot(receiver.normal, previous.rays.forward)) {}
 
   bool operator()(int x, int y) const {
     if (x < 0 || y < 0 || x >= previous_.view.width || y >= previous_.view.height) return false;
@@ -23,17 +27,19 @@ class TapTest {
   /// The same, but for the id.
   bool on_plane(int x, int y) const {
     const float depth = previous_.depth().at(x, y);
-    const float distance = glm::dot(receiver_.normal, previous_.position_at(x, y)) - plane_;
-    const PixelRays<float>& rays = previous_.rays;
-    const float footprint = angle_ * (rays.near_weight + rays.far_weight * depth);
-    return std::abs(distance) <= kTapPlaneTolerancePx * footprint &&
+    const float lateral =
+        start_ + (static_cast<float>(x) + 0.5f) * across_ + (static_cast<float>(y) + 0.5f) * down_;
+    const float scale = previous_.rays.near_weight + previous_.rays.far_weight * depth;
+    const float distance = scale * lateral + depth * forward_ - offset_;
+    return std::abs(distance) <= tolerance_ * scale &&
            glm::dot(receiver_.normal, previous_.normal_at(x, y)) >= kTapNormalCosine;
   }
 
  private:
   const Guides& previous_;
   const Receiver& receiver_;
-  float plane_, angle_;
+  float offset_, tolerance_;
+  float start_, across_, down_, forward_;  ///< of PixelRays along the normal
 };
 
 /// The corner of the 2x2 block that holds tap column or row `t`, moved inside the image.
@@ -104,7 +110,8 @@ Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid)
       sum += w;
     }
   if (!(sum > kLeastTapSum)) return nearest_taps(previous, x, y, valid);
-  for (float& w : taps.weight) w /= sum;
+  const float inverse = 1.0f / sum;
+  for (float& w : taps.weight) w *= inverse;
   return taps;
 }
 

@@ -28,6 +28,12 @@ inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
 inline constexpr float kLeastTapWeight = 1e-3f;      // of one tap, below which it is left out
 inline constexpr float kLeastTapSum = 0.01f;         // of the valid taps, below which they are lost
 
+/// How far off the receiver's plane a pixel at depth 1 m (of an orthographic view, at any) may be,
+/// metres.
+inline float tap_tolerance(const Guides& previous) {
+  return kTapPlaneTolerancePx * static_cast<float>(previous.view.pixel_angle);
+}
+
 /// Finds taps around previous pixel position (x, y): the 2x2 bilinear neighbourhood, each tap
 /// tested on its own (inside the image, same id, on the receiver's plane, similar normal) and
 /// renormalised; else the nearest valid tap of the 3x3 neighbourhood; else none.
