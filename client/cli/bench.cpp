@@ -156,6 +156,7 @@ OneSignal time_one_signal(BenchFrames& frames, const BenchOptions& options, bool
 
 BenchResult run_bench(const BenchOptions& options) {
   BenchResult result;
+  if (options.limits) result.limits = measure_machine_limits();
   result.isa = isa_name(selected_isa());
   BenchFrames frames(options.scene, options.width, options.height,
                      options.warm_frames + options.frames);
@@ -189,6 +190,12 @@ BenchResult run_bench(const BenchOptions& options) {
         if (same.stage == stage.stage) stage.reference_ns_per_pixel = same.ms * ns_per_pixel;
   }
   if (options.one_signal) result.one_signal = time_one_signal(frames, options, one_thread);
+  if (result.limits) {
+    const MachineLimits after = measure_machine_limits();
+    result.limits =
+        MachineLimits{std::max(result.limits->multiply_adds_per_ns, after.multiply_adds_per_ns),
+                      std::max(result.limits->copy_gb_per_s, after.copy_gb_per_s)};
+  }
   return result;
 }
 

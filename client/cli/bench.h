@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/kernels/machine_limits.h"
+
 namespace holdfast::cli {
 
 /// What `holdfast bench` runs.
@@ -25,6 +27,7 @@ struct BenchOptions {
   int threads = 0;          ///< that filter; 0 = one for each core
   bool reference = true;    ///< also time the scalar kernels
   bool one_signal = false;  ///< also time OneSignal
+  bool limits = false;      ///< also measure what the machine can do
 };
 
 /// One stage of the core, a frame, as the mean over kinds of frames of medians.
@@ -56,6 +59,7 @@ struct BenchResult {
   std::vector<BenchFrame> frames;  ///< of every recipe
   std::string plan;                ///< of the first recipe
   std::optional<OneSignal> one_signal;
+  std::optional<MachineLimits> limits;  ///< the better of before and after all else
 };
 
 /// Times the core alone: frames are in memory before the first is filtered, and results are

@@ -69,6 +69,8 @@ void add_bench(CLI::App& app) {
   command.add_flag("--no-reference", args->no_reference, "Do not time the scalar kernels");
   command.add_flag("--one-signal", options.one_signal,
                    "Also time one signal of three channels under svgf with four levels");
+  command.add_flag("--limits", options.limits,
+                   "Also measure what one thread can multiply and copy at most");
   command.add_flag("--plan", args->plan, "Also print the first recipe's plan");
   command.add_flag("--transport", args->transport,
                    "Instead, move frames through a server over TCP and a unix socket, without "

@@ -22,6 +22,9 @@ nlohmann::ordered_json bench_json(const BenchResult& result) {
   if (result.one_signal)
     json["one_signal"] = {{"us_per_pixel", result.one_signal->us_per_pixel},
                           {"reference_us_per_pixel", result.one_signal->reference_us_per_pixel}};
+  if (result.limits)
+    json["limits"] = {{"multiply_adds_per_ns", result.limits->multiply_adds_per_ns},
+                      {"copy_gb_per_s", result.limits->copy_gb_per_s}};
   return json;
 }
 
@@ -47,6 +50,9 @@ std::string bench_text(const BenchResult& result) {
           one->reference_us_per_pixel / one->us_per_pixel);
     text += "\n";
   }
+  if (const auto& limits = result.limits)
+    add("one thread of this machine: %.1f multiply-adds of floats/ns, %.1f GB/s copied\n",
+        limits->multiply_adds_per_ns, limits->copy_gb_per_s);
   return text;
 }
 

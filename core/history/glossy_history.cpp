@@ -11,19 +11,11 @@
 namespace holdfast {
 namespace {
 
-constexpr float kRoughnessTolerance = 0.1f;  // perceptual; ours
-
-/// Receivers that are looked for.
-struct Wanted {
-  FollowedBlock wanted;
-  std::uint32_t id[kFollowBlock];
-  float roughness[kFollowBlock];
-  Taps* taps;  ///< of the lanes
-};
-
 /// A block of a row on its way to the previous frame.
-struct Lanes : Wanted {
+struct Lanes {
+  FollowedBlock wanted;                                  ///< the receivers that are looked for
   FollowedBlock some;                                    ///< of those on one of several objects
+  float any[kFollowBlock];                               ///< 1: there are taps
   float now_x[kFollowBlock], now_y[kFollowBlock];        ///< of the images, this frame
   float centre_x[kFollowBlock], centre_y[kFollowBlock];  ///< of the images, one frame ago
   int surface[kFollowBlock], hit[kFollowBlock];          ///< slots; -1: followed
@@ -44,10 +36,11 @@ class GlossyTracer {
 
   /// The pixels of a block from (x, y) on.
   void trace(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
-    lanes.taps = out.taps[0].row(y) + x;
+    Taps* taps = out.taps[0].row(y) + x;
     std::fill_n(lanes.wanted.found, count, 0.0f);
     if (!any_sample(x, y, count)) {
-      std::fill_n(lanes.taps, count, Taps{});
+      std::fill_n(taps, count, Taps{});
+      std::fill_n(lanes.any, count, 0.0f);
       return write(x, y, count, lanes, out);
     }
     const bool one_pair = find_slots(x, y, count, lanes);
@@ -59,10 +52,9 @@ class GlossyTracer {
       std::copy_n(lanes.wanted.y, count, lanes.centre_y);
       scatter(x, y, count, lanes);
     }
-    std::copy_n(now_.id[0].row(y) + x, count, lanes.id);
-    find_block_taps({previous_, lanes.wanted, lanes.id, count, lanes.taps});
-    drop_foreign(count, lanes);
-    if (rule_ == GlossyRule::kStochastic) look_at_centres(count, lanes);
+    const std::uint32_t* id = now_.id[0].row(y) + x;
+    find_block_taps({previous_, lanes.wanted, id, count, taps, known_roughness(x, y), lanes.any});
+    if (rule_ == GlossyRule::kStochastic) look_at_centres(x, y, count, lanes, taps);
     write(x, y, count, lanes, out);
   }
 
@@ -85,7 +77,6 @@ class GlossyTracer {
       lanes.surface[i] = depth[i] > 0.0f ? slot.of(id[i]) : -1;
       lanes.hit[i] = hit_id != nullptr ? hit_slot.of(hit_id[i]) : 0;
     }
-    for (int i = 0; i < count; ++i) lanes.roughness[i] = now_.roughness_at(x + i, y);
     const int* first =
         std::find_if(lanes.surface, lanes.surface + count, [](int s) { return s >= 0; });
     const auto at = first - lanes.surface;
@@ -137,55 +128,59 @@ class GlossyTracer {
 
   /// Draws a place around each that is wanted.
   void scatter(int x, int y, int count, Lanes& lanes) const {
+    static constexpr float kMirrors[kFollowBlock] = {};
+    const float* roughness = now_.roughness ? now_.roughness[0].row(y) + x : kMirrors;
     float u[kFollowBlock], v[kFollowBlock];
     draw_pairs({frame_key_, (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x),
                 count, u, v});
     spread_reflection({previous_pixel_, 1.0f / static_cast<float>(previous_.view.pixel_angle),
-                       lanes.roughness, planes_.distance->channel(0).row(y) + x, u, v, lanes.wanted,
+                       roughness, planes_.distance->channel(0).row(y) + x, u, v, lanes.wanted,
                        count, lanes.wanted.x, lanes.wanted.y});
   }
 
-  /// Takes the taps from receivers of another roughness.
-  void drop_foreign(int count, Wanted& lanes) const {
-    if (!previous_.roughness || !now_.roughness) return;
-    const ChannelView<const float> roughness = previous_.roughness[0];
-    for (int i = 0; i < count; ++i)
-      if (!(std::abs(gather(roughness, lanes.taps[i]) - lanes.roughness[i]) <= kRoughnessTolerance))
-        lanes.taps[i] = Taps{};
+  /// Of the receivers from (x, y) on; null where not both frames have it.
+  const float* known_roughness(int x, int y) const {
+    return now_.roughness && previous_.roughness ? now_.roughness[0].row(y) + x : nullptr;
   }
 
   /// Looks at the images themselves for receivers that were not found near them, which are moved
   /// together so that no others are looked for.
-  void look_at_centres(int count, Lanes& lanes) const {
-    Wanted lost;
+  void look_at_centres(int x, int y, int count, Lanes& lanes, Taps* taps) const {
+    const std::uint32_t* id = now_.id[0].row(y) + x;
+    const float* roughness = known_roughness(x, y);
+    FollowedBlock lost;
+    std::uint32_t lost_id[kFollowBlock];
+    float lost_roughness[kFollowBlock], any[kFollowBlock];
     Taps found[kFollowBlock];
-    lost.taps = found;
     int source[kFollowBlock], left = 0;
     for (int i = 0; i < count; ++i) {
-      if (lanes.wanted.found[i] == 0.0f || lanes.taps[i].any()) continue;
+      if (lanes.wanted.found[i] == 0.0f || lanes.any[i] > 0.0f) continue;
       lanes.wanted.x[i] = lanes.centre_x[i];
       lanes.wanted.y[i] = lanes.centre_y[i];
-      copy_lane(lanes.wanted, i, lost.wanted, left);
-      lost.id[left] = lanes.id[i];
-      lost.roughness[left] = lanes.roughness[i];
+      copy_lane(lanes.wanted, i, lost, left);
+      lost_id[left] = id[i];
+      lost_roughness[left] = roughness != nullptr ? roughness[i] : 0.0f;
       source[left++] = i;
     }
     if (left == 0) return;
-    find_block_taps({previous_, lost.wanted, lost.id, left, lost.taps});
-    drop_foreign(left, lost);
-    for (int k = 0; k < left; ++k) lanes.taps[source[k]] = lost.taps[k];
+    find_block_taps({previous_, lost, lost_id, left, found,
+                     roughness != nullptr ? lost_roughness : nullptr, any});
+    for (int k = 0; k < left; ++k) {
+      taps[source[k]] = found[k];
+      lanes.any[source[k]] = any[k];
+    }
   }
 
   /// Writes the vectors of the pixels from (x, y) on: none where there are no taps.
   void write(int x, int y, int count, const Lanes& lanes, EffectHistory& out) const {
     float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
           *trust = out.motion[kMotionTrust].row(y) + x;
-    const float row = static_cast<float>(y) + 0.5f;
+    const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
     for (int i = 0; i < count; ++i) {
-      const bool any = lanes.wanted.found[i] > 0.0f && lanes.taps[i].any();
-      motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(x + i) + 0.5f) : 0.0f;
+      const bool any = lanes.any[i] > 0.0f;
+      motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
       motion_y[i] = any ? lanes.wanted.y[i] - row : 0.0f;
-      trust[i] = any ? 1.0f : 0.0f;
+      trust[i] = lanes.any[i];
     }
   }
 

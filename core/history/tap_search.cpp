@@ -1,5 +1,8 @@
 #include "core/history/tap_search.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/history/tap_lanes.h"
 #include "core/kernels/variants.h"
 #include "core/motion/plain_math.h"
@@ -14,6 +17,7 @@ struct FoundTaps {
   TapLanes lanes;
   float column[kFollowBlock], row[kFollowBlock];  ///< of the first of the four pixels
   std::int32_t lost[kFollowBlock];                ///< 1: none of the four is valid
+  float any[kFollowBlock];                        ///< 1: there are taps
 };
 
 /// What the previous frame shows at the four pixels; depth 0 where there is none.
@@ -173,11 +177,30 @@ HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
     const float sum = w0[i] + w1[i] + w2[i] + w3[i];
     const float kept = sum > kLeastTapSum ? 1.0f : 0.0f, divisor = sum > kLeastTapSum ? sum : 1.0f;
     out.lost[i] = sum > kLeastTapSum ? 0 : out.lost[i];
+    out.any[i] = kept;
     const float inverse = kept / divisor;
     w0[i] *= inverse;
     w1[i] *= inverse;
     w2[i] *= inverse;
     w3[i] *= inverse;
+  }
+}
+
+/// Leaves out what is of another roughness.
+HOLDFAST_INLINE void test_roughness(const TapSearch& a, FoundTaps& out) {
+  const float* wanted = a.roughness;
+  float there[kFollowBlock];
+  gather_lanes(a.previous.roughness[0], out.lanes, there);
+  float *w0 = out.lanes.weight[0], *w1 = out.lanes.weight[1], *w2 = out.lanes.weight[2],
+        *w3 = out.lanes.weight[3];
+#pragma GCC ivdep
+  for (int i = 0; i < a.count; ++i) {
+    const float same = abs_of(there[i] - wanted[i]) <= kTapRoughnessTolerance ? 1.0f : 0.0f;
+    out.any[i] *= same;
+    w0[i] *= same;
+    w1[i] *= same;
+    w2[i] *= same;
+    w3[i] *= same;
   }
 }
 
@@ -188,6 +211,7 @@ HOLDFAST_INLINE void receivers_body(const SearchBlock& a) {
   look(a.search, a.out.lanes, shown);
   test_receivers(a.search, shown, a.out);
   normalise_weights(a.search.count, a.out);
+  if (a.search.roughness != nullptr) test_roughness(a.search, a.out);
 }
 
 HOLDFAST_INLINE void surfaces_body(const SearchBlock& a) {
@@ -209,6 +233,10 @@ void write_taps(const TapLanes& lanes, Taps* taps) {
                {lanes.weight[0][i], lanes.weight[1][i], lanes.weight[2][i], lanes.weight[3][i]}};
 }
 
+bool is_as_rough(const Guides& previous, const Taps& taps, float roughness) {
+  return std::abs(gather(previous.roughness[0], taps) - roughness) <= kTapRoughnessTolerance;
+}
+
 }  // namespace
 
 void find_block_taps(const TapSearch& search) {
@@ -216,20 +244,28 @@ void find_block_taps(const TapSearch& search) {
   receivers({search, found});
   write_taps(found.lanes, search.taps);
   const FollowedBlock& at = search.followed;
-  for (int i = 0; i < search.count; ++i)
-    if (found.lost[i])
-      search.taps[i] =
-          rescue_taps(search.previous, at.x[i], at.y[i], receiver_of(at, i, search.id[i]));
+  for (int i = 0; i < search.count; ++i) {
+    if (!found.lost[i]) continue;
+    Taps taps = rescue_taps(search.previous, at.x[i], at.y[i], receiver_of(at, i, search.id[i]));
+    if (search.roughness != nullptr && !is_as_rough(search.previous, taps, search.roughness[i]))
+      taps = Taps{};
+    search.taps[i] = taps;
+    found.any[i] = taps.any() ? 1.0f : 0.0f;
+  }
+  if (search.any != nullptr) std::copy_n(found.any, search.count, search.any);
 }
 
 void find_block_taps_on_any_surface(const TapSearch& search) {
   FoundTaps found;
   surfaces({search, found});
   write_taps(found.lanes, search.taps);
-  for (int i = 0; i < search.count; ++i)
-    if (found.lost[i])
-      search.taps[i] =
-          rescue_taps_on_any_surface(search.previous, search.followed.x[i], search.followed.y[i]);
+  for (int i = 0; i < search.count; ++i) {
+    if (!found.lost[i]) continue;
+    search.taps[i] =
+        rescue_taps_on_any_surface(search.previous, search.followed.x[i], search.followed.y[i]);
+    found.any[i] = search.taps[i].any() ? 1.0f : 0.0f;
+  }
+  if (search.any != nullptr) std::copy_n(found.any, search.count, search.any);
 }
 
 }  // namespace holdfast

@@ -21,6 +21,11 @@ struct TapSearch {
   const std::uint32_t* id;        ///< of the receivers
   int count;                      ///< 1..kFollowBlock
   Taps* taps;                     ///< `count` are written
+  /// Perceptual, of the receivers: taps whose mean differs by more than kTapRoughnessTolerance are
+  /// left out. Null: roughness does not matter. `previous` has it.
+  const float* roughness = nullptr;
+  float* any =
+      nullptr;  ///< `count` are written: 1 where there are taps, else 0; null: not asked for
 };
 
 /// `find_taps` at every place.

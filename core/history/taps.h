@@ -23,10 +23,11 @@ struct Receiver {
 };
 
 /// Rules of tap validity.
-inline constexpr float kTapPlaneTolerancePx = 2.0f;  // footprints off the receiver's plane; ours
-inline constexpr float kTapNormalCosine = 0.9f;      // 26 degrees; ours
-inline constexpr float kLeastTapWeight = 1e-3f;      // of one tap, below which it is left out
-inline constexpr float kLeastTapSum = 0.01f;         // of the valid taps, below which they are lost
+inline constexpr float kTapPlaneTolerancePx = 2.0f;    // footprints off the receiver's plane; ours
+inline constexpr float kTapNormalCosine = 0.9f;        // 26 degrees; ours
+inline constexpr float kTapRoughnessTolerance = 0.1f;  // perceptual, where it matters; ours
+inline constexpr float kLeastTapWeight = 1e-3f;        // of one tap, below which it is left out
+inline constexpr float kLeastTapSum = 0.01f;  // of the valid taps, below which they are lost
 
 /// How far off the receiver's plane a pixel at depth 1 m (of an orthographic view, at any) may be,
 /// metres.

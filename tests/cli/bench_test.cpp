@@ -44,6 +44,16 @@ TEST_F(Bench, TimesEachStageAndEachRecipe) {
   EXPECT_NE(text.find("recipe reliable"), std::string::npos) << "the plan";
 }
 
+TEST_F(Bench, MeasuresWhatTheMachineCanDo) {
+  const auto json = bench({"--scene", "fence", "--size", "32x16", "--no-reference", "--limits"});
+  const double copied = json["limits"]["copy_gb_per_s"];
+  EXPECT_GT(json["limits"]["multiply_adds_per_ns"].get<double>(), 0.05);
+  EXPECT_GT(copied, 0.05);
+  EXPECT_NE(text.find("multiply-adds of floats/ns"), std::string::npos) << text;
+  for (const auto& stage : json["stages"])
+    EXPECT_GT(stage["ns_per_pixel"].get<double>(), 0) << stage;
+}
+
 TEST_F(Bench, TakesASequenceAtItsOwnSize) {
   render("cylinder", {"--frames", "2", "--reference-spp", "0"});
   const auto json = bench({"--scene", path("in"), "--no-reference", "--quiet"});

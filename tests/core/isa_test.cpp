@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/kernels/machine_limits.h"
+#include "tests/core/isa_guard.h"
+
 namespace holdfast {
 namespace {
 
@@ -29,6 +32,20 @@ TEST(Isa, NamesAreThoseOfTheDocumentation) {
   EXPECT_EQ(isa_name(Isa::kX86_64V3), "x86-64-v3");
   EXPECT_EQ(isa_name(Isa::kX86_64V4), "x86-64-v4");
 }
+
+// Sanitized builds have one variant for all.
+#if !defined(HOLDFAST_ONE_VARIANT)
+TEST(MachineLimits, GrowWithTheWidthOfVectors) {
+  const test::IsaGuard guard;
+  select_isa(Isa::kScalar);
+  const MachineLimits scalar = measure_machine_limits();
+  select_isa(available_isas().back());
+  const MachineLimits widest = measure_machine_limits();
+  EXPECT_GT(scalar.multiply_adds_per_ns, 0);
+  EXPECT_GT(scalar.copy_gb_per_s, 0);
+  EXPECT_GT(widest.multiply_adds_per_ns, 2 * scalar.multiply_adds_per_ns);
+}
+#endif
 
 }  // namespace
 }  // namespace holdfast
