@@ -93,8 +93,11 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   if (input.light != nullptr)
     tracer.emplace(input.frames.now, input.frames.scene, *input.light, input.blockers);
   if (!input.cone_samples.empty()) correct_by_cones(input, scratch);
-  measure(input, tracer ? &*tracer : nullptr, scratch);
-  input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
+  const bool young_alone = recipe_.svgf_filter && !has_footprint_ && !follows_effect_;
+  if (!young_alone) {
+    measure(input, tracer ? &*tracer : nullptr, scratch);
+    input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
+  }
 
   const bool follows = follows_effect(input);
   if (follows && !cones_) {
@@ -104,6 +107,10 @@ void ComponentFilter::run(const ComponentInput& input, Scratch& scratch, Plane& 
   blend(input, follows, scratch);
   const bool candidates = recipe_.blending == Blending::kExpectedError && input.surface != nullptr;
   input.timer.end("blend", blend_traffic(channels_, candidates, follows_effect_));
+  if (young_alone) {
+    measure_young(input, scratch);
+    input.timer.end("statistics", statistics_traffic(channels_, has_footprint_));
+  }
   HistoryRoom& histories = room(scratch);
   if (input.unshadowed != nullptr)
     set_unlit(*input.unshadowed, kUnlitSamples, histories.now.samples());
@@ -170,15 +177,7 @@ void ComponentFilter::trace_effect(const ComponentInput& input, const ShadowTrac
 
 void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* tracer,
                               Scratch& s) const {
-  const int width = input.frames.now.view.width, height = input.frames.now.view.height;
-  const int last = channels_ - 1;
-  for_each_row(height, [&](int y) {
-    luminance_row({{s.noisy[0].row(y), s.noisy[last / 2].row(y), s.noisy[last].row(y)},
-                   channels_,
-                   width,
-                   s.measured[kLuminance].row(y),
-                   s.measured[kSquare].row(y)});
-  });
+  measure_luminance(s);
   if (tracer != nullptr)
     tracer->measure(s.measured, kField);
   else if (has_footprint_)
@@ -192,15 +191,44 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
   s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
   window_means(input.frames.now, measured, has_footprint_ ? kMeasured : kField, kStatisticsStep,
                s.window, s.means, 0, &s.measured_activity);
+  finish_statistics(s);
+}
+
+/// The variance of samples where the history that has been blended is young, as it is wherever
+/// there is no surface, which surfaces beside look at; elsewhere anything.
+void ComponentFilter::measure_young(const ComponentInput& input, Scratch& s) const {
+  s.measured_activity.measure_below(std::as_const(room(s).now).samples(), kYoung,
+                                    1 + kStatisticsStep);
+  if (s.measured_activity.active_share() == 0) return;
+  measure_luminance(s);
+  window_means(input.frames.now, s.measured, kField, kStatisticsStep, s.window, s.means, 0,
+               &s.measured_activity);
+  finish_statistics(s);
+}
+
+/// The luminance of the samples, and its square.
+void ComponentFilter::measure_luminance(Scratch& s) const {
+  const int last = channels_ - 1;
+  for_each_row(s.noisy.height(), [&](int y) {
+    luminance_row({{s.noisy[0].row(y), s.noisy[last / 2].row(y), s.noisy[last].row(y)},
+                   channels_,
+                   s.noisy.width(),
+                   s.measured[kLuminance].row(y),
+                   s.measured[kSquare].row(y)});
+  });
+}
+
+/// From means to variance and footprint.
+void ComponentFilter::finish_statistics(Scratch& s) const {
   const bool visibility = channels_ == 1;
-  for_each_row(height, [&](int y) {
+  for_each_row(s.noisy.height(), [&](int y) {
     StatisticsRow row{};
     row.mean = s.means[kLuminance].row(y);
     row.square = s.means[kSquare].row(y);
     row.variance = s.means[kSquare].row(y);
     row.floor_share = visibility ? 0.0f : kRelativeVarianceFloor;
     row.floor_0 = visibility ? kVisibilityVarianceFloor : kVarianceFloor;
-    row.width = width;
+    row.width = s.noisy.width();
     if (has_footprint_) {
       row.valid = s.means[kField + kFieldValid].row(y);
       for (int c = 0; c < 3; ++c) {

@@ -32,6 +32,7 @@ struct ComponentInput {
 
 /// Filters one component in time and space, and keeps its history.
 ///   local statistics -> the effect's vectors -> blend with history -> spatial filter
+/// but for SVGF's filter, which needs statistics only where history is young, after the blend.
 class ComponentFilter {
  public:
   /// For images of that size.
@@ -66,6 +67,9 @@ class ComponentFilter {
   bool shadows_at_rest(const ComponentInput& input) const;
   void trace_effect(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
   void measure(const ComponentInput& input, const ShadowTracer* tracer, Scratch& s) const;
+  void measure_young(const ComponentInput& input, Scratch& s) const;
+  void measure_luminance(Scratch& s) const;
+  void finish_statistics(Scratch& s) const;
   HistoryRoom& room(Scratch& s) const { return channels_ == 1 ? s.visibility : s.radiance; }
   void blend(const ComponentInput& input, bool follows, Scratch& s);
   void filter(const ComponentInput& input, Scratch& s, Plane& out);

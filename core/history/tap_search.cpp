@@ -169,6 +169,7 @@ HOLDFAST_INLINE void test_surfaces(const TapSearch& a, int dx, int dy, FoundTaps
   for (int i = 0; i < a.count; ++i) weight[i] = depth[i] > 0.0f ? weight[i] : 0.0f;
 }
 
+/// Of a single pixel exactly to 1, as a quotient would be.
 HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
   float *w0 = out.lanes.weight[0], *w1 = out.lanes.weight[1], *w2 = out.lanes.weight[2],
         *w3 = out.lanes.weight[3];
@@ -179,10 +180,13 @@ HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
     out.lost[i] = sum > kLeastTapSum ? 0 : out.lost[i];
     out.any[i] = kept;
     const float inverse = kept / divisor;
-    w0[i] *= inverse;
-    w1[i] *= inverse;
-    w2[i] *= inverse;
-    w3[i] *= inverse;
+    const float n0 = w0[i] * inverse, n1 = w1[i] * inverse, n2 = w2[i] * inverse,
+                n3 = w3[i] * inverse;
+    const float left = 1.0f - (n0 + n1 + n2 + n3);
+    w0[i] = n0 + n0 * left;
+    w1[i] = n1 + n1 * left;
+    w2[i] = n2 + n2 * left;
+    w3[i] = n3 + n3 * left;
   }
 }
 

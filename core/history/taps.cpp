@@ -112,6 +112,8 @@ Taps bilinear_taps(const Guides& previous, float x, float y, const Valid& valid)
   if (!(sum > kLeastTapSum)) return nearest_taps(previous, x, y, valid);
   const float inverse = 1.0f / sum;
   for (float& w : taps.weight) w *= inverse;
+  const float left = 1.0f - (taps.weight[0] + taps.weight[1] + taps.weight[2] + taps.weight[3]);
+  for (float& w : taps.weight) w += w * left;  // a single one is exactly 1
   return taps;
 }
 

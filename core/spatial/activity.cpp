@@ -12,9 +12,9 @@ namespace {
 constexpr int tiles(int pixels, int size) { return (pixels + size - 1) / size; }
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// One row of tiles: smallest and largest value of a signal on the surfaces of each.
+/// One row of tiles: smallest and largest value of a signal where `where` is positive.
 struct TileRanges {
-  ChannelView<const float> depth, signal;
+  ChannelView<const float> where, signal;
   int first_y, last_y;
   float low, high;  ///< to begin with
   float *low_out, *high_out;
@@ -23,11 +23,11 @@ struct TileRanges {
 HOLDFAST_INLINE void widen(const TileRanges& a, int x0, int count, float* __restrict low,
                            float* __restrict high) {
   for (int y = a.first_y; y < a.last_y; ++y) {
-    const float* __restrict depth = a.depth.row(y) + x0;
-    const float* __restrict value = a.signal.row(y) + x0;
+    const float* where = a.where.row(y) + x0;
+    const float* value = a.signal.row(y) + x0;
     for (int i = 0; i < count; ++i) {
-      const float least = depth[i] > 0.0f ? value[i] : low[i];
-      const float most = depth[i] > 0.0f ? value[i] : high[i];
+      const float least = where[i] > 0.0f ? value[i] : low[i];
+      const float most = where[i] > 0.0f ? value[i] : high[i];
       low[i] = min_of(least, low[i]);
       high[i] = max_of(most, high[i]);
     }
@@ -81,18 +81,28 @@ void ActivityMap::measure(const Guides& guides, std::span<const ChannelView<cons
                           std::span<const int> halos, float tolerance, bool around_zero) {
   std::fill(zone_.begin(), zone_.end(), kRest);
   for (const ChannelView<const float>& signal : signals) {
-    measure_ranges(guides, signal, around_zero);
+    measure_ranges(guides.depth(), signal, around_zero);
     for (std::size_t zone = 0; zone < halos.size(); ++zone)
       mark(halos[zone], static_cast<int>(zone), tolerance);
   }
 }
 
-void ActivityMap::measure_ranges(const Guides& guides, ChannelView<const float> signal,
+void ActivityMap::measure_below(ChannelView<const float> values, float limit, int halo) {
+  std::fill(zone_.begin(), zone_.end(), kRest);
+  measure_ranges(values, values, false);
+  for (std::size_t tile = 0; tile < zone_.size(); ++tile) {
+    high_[tile] = low_[tile] < limit ? 1.0f : 0.0f;
+    low_[tile] = 0.0f;
+  }
+  mark(halo, 0, 0.0f);
+}
+
+void ActivityMap::measure_ranges(ChannelView<const float> where, ChannelView<const float> signal,
                                  bool around_zero) {
   for_each_index(0, rows_, 1, [&](int row) {
-    tile_ranges({guides.depth(), signal, row * kTileHeight,
-                 std::min((row + 1) * kTileHeight, signal.height), around_zero ? 0.0f : kInfinity,
-                 around_zero ? 0.0f : -kInfinity, &low_[at(row, 0)], &high_[at(row, 0)]});
+    tile_ranges({where, signal, row * kTileHeight, std::min((row + 1) * kTileHeight, signal.height),
+                 around_zero ? 0.0f : kInfinity, around_zero ? 0.0f : -kInfinity, &low_[at(row, 0)],
+                 &high_[at(row, 0)]});
   });
 }
 

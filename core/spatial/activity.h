@@ -36,6 +36,10 @@ class ActivityMap {
   void measure(const Guides& guides, std::span<const ChannelView<const float>> signals,
                std::span<const int> halos, float tolerance, bool around_zero = false);
 
+  /// Marks the tiles that come within `halo` pixels of a tile with a pixel, on a surface or not,
+  /// whose value is below `limit`. Values are positive.
+  void measure_below(ChannelView<const float> values, float limit, int halo);
+
   /// Whether the tile of pixel (x, y) is active in a zone.
   bool active(int x, int y, int zone = kWidestZone) const {
     return zone_[static_cast<std::size_t>(y / kTileHeight * columns_ + x / kTileWidth)] <= zone;
@@ -46,7 +50,9 @@ class ActivityMap {
  private:
   static constexpr std::uint8_t kRest = 255;
 
-  void measure_ranges(const Guides& guides, ChannelView<const float> signal, bool around_zero);
+  /// Of the pixels where `where` is positive.
+  void measure_ranges(ChannelView<const float> where, ChannelView<const float> signal,
+                      bool around_zero);
   void mark(int halo, int zone, float tolerance);
   std::size_t at(int row, int column) const {
     return static_cast<std::size_t>(row * columns_ + column);

@@ -66,7 +66,6 @@ HOLDFAST_INLINE void statistics_kernel_body(const StatisticsRow& a) {
 }
 
 HOLDFAST_INLINE void moment_variance_kernel_body(const MomentVarianceRow& a) {
-  constexpr float kYoungFrames = 4.0f;  // SVGF sec. 4.2
   const float* __restrict moment_1 = a.moment_1;
   const float* __restrict moment_2 = a.moment_2;
   const float* __restrict samples = a.samples;
@@ -75,8 +74,7 @@ HOLDFAST_INLINE void moment_variance_kernel_body(const MomentVarianceRow& a) {
   for (int x = 0; x < a.width; ++x) {
     const float variance = max_of(moment_2[x] - square(moment_1[x]), 0.0f);
     const float young = max_of(variance, sample_variance[x]) * kYoungFrames / samples[x];
-    // Counts of frames are integers but for rounding, which must not decide.
-    out[x] = samples[x] < kYoungFrames - 0.5f ? young : variance;
+    out[x] = samples[x] < kYoung ? young : variance;
   }
 }
 

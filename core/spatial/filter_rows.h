@@ -49,8 +49,13 @@ struct StatisticsRow {
 };
 void statistics_row(const StatisticsRow& row) noexcept;
 
+/// Frames of history below which SVGF estimates its variance in space (SVGF sec. 4.2). Counts of
+/// frames are integers but for rounding, which must not decide: those below kYoung are fewer.
+inline constexpr float kYoungFrames = 4.0f, kYoung = kYoungFrames - 0.5f;
+
 /// SVGF's variance: out = max(moment_2 - moment_1^2, 0); where `samples`, frames of history, are
-/// fewer than 4, 4 / samples times the larger of that and `sample_variance` (SVGF sec. 4.2).
+/// below kYoung, 4 / samples times the larger of that and `sample_variance`, which is not looked at
+/// elsewhere.
 struct MomentVarianceRow {
   const float *moment_1, *moment_2, *samples, *sample_variance;
   int width;

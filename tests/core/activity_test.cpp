@@ -1,6 +1,8 @@
 #include "core/spatial/activity.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +57,26 @@ TEST(ActivityMap, ZonesAreTheTilesWhoseHaloVaries) {
                 << " halo " << halos[zone];
     }
   }
+}
+
+TEST(ActivityMap, BelowALimitAreTheTilesThatAHaloReaches) {
+  constexpr int kWidth = 131, kHeight = 67, kX = 70, kY = 30;
+  constexpr int kW = ActivityMap::kTileWidth, kH = ActivityMap::kTileHeight;
+  Channels<float> image(kWidth, kHeight, 1);
+  test::fill(image[0], 3.5f);  // not below
+  ActivityMap map(kWidth, kHeight);
+  map.measure_below(std::as_const(image)[0], 3.5f, 4);
+  EXPECT_EQ(map.active_share(), 0.0);
+  image[0].at(kX, kY) = 3.0f;
+  map.measure_below(std::as_const(image)[0], 3.5f, 4);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      ASSERT_EQ(map.active(x, y),
+                std::abs(x / kW - kX / kW) <= 1 && std::abs(y / kH - kY / kH) <= 1)
+          << x << "," << y;
+  test::fill(image[0], 1.0f);  // a constant, all of it below
+  map.measure_below(std::as_const(image)[0], 3.5f, 0);
+  EXPECT_EQ(map.active_share(), 1.0);
 }
 
 TEST(ActivityMap, AroundZeroAConstantIsActive) {
