@@ -244,6 +244,7 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   HistorySources sources;
   if (recipe_.blending != Blending::kNoHistory) sources.surface = input.surface;
   if (follows) sources.effect = &s.effect;
+  sources.effect_stands_in = component_.kind == ComponentKind::kIndirect;
   if (input.gradients && sources.surface != nullptr)
     sources.antilag = antilag_of_gradients(input.frames.now, recipe_.gradient_levels, s.gradients);
   HistoryRoom& histories = room(s);

@@ -28,7 +28,14 @@ AccumulationLanes choose(const HistorySources& sources, Rectification rectificat
   const Taps* surface = sources.surface != nullptr ? sources.surface->taps[0].row(y) + x : kNone;
   AccumulationLanes lanes{surface, nullptr, nullptr, clamps(rectification, false),
                           clamps(rectification, true)};
-  if (sources.effect != nullptr) {
+  if (sources.effect != nullptr && sources.effect_stands_in) {
+    lanes.taps = preferred_taps(surface, sources.effect->taps[0].row(y) + x, count, own.taps);
+    if (lanes.taps == own.taps) {
+      for (int i = 0; i < count; ++i)
+        own.effect[i] = !surface[i].any() && own.taps[i].any() ? 1.0f : 0.0f;
+      lanes.effect = own.effect;
+    }
+  } else if (sources.effect != nullptr) {
     const Taps* effect = sources.effect->taps[0].row(y) + x;
     const float* trust = sources.effect->motion[kMotionTrust].row(y) + x;
     for (int i = 0; i < count; ++i) {

@@ -23,8 +23,9 @@ struct AccumulationRule {
 ///   C_i = a noisy + (1 - a) C_{i-1},  a = max(alpha, 1 / (N + 1)),  then a' = 1 - trust (1 - a)
 /// where trust is that of the shadow vector and N the number of samples behind the history, which
 /// levels off at (2 - alpha) / alpha. The shadow vector is taken where it has taps, else the
-/// surface vector. Colours are clamped in YCoCg. With gradients, trust is multiplied by 1 - lambda,
-/// which makes a' = (1 - lambda) a + lambda (A-SVGF eq. 6).
+/// surface vector; what stands in for the surface the other way round, with full trust. Colours are
+/// clamped in YCoCg. With gradients, trust is multiplied by 1 - lambda, which makes a' = (1 -
+/// lambda) a + lambda (A-SVGF eq. 6).
 ///   reads noisy, `before` | writes `now`, `debug` (may be null) | halo 1 px
 void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
                 const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,

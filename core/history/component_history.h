@@ -62,6 +62,8 @@ struct HistorySources {
   const SurfaceHistory* surface = nullptr;
   const EffectHistory* effect = nullptr;
   ChannelView<const float> antilag = {};  ///< lambda of `antilag_of_gradients`, by stratum
+  bool effect_stands_in = false;  ///< the effect is followed only where the surface has no taps,
+                                  ///< and is anything elsewhere
 };
 
 /// Optional record of what a temporal pass did, for the debug planes: motion_px X, Y, frames of

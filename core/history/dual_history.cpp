@@ -1,6 +1,5 @@
 #include "core/history/dual_history.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/kernels/parallel.h"
@@ -51,16 +50,15 @@ void trace_dual_history(const FramePair& frames, const SurfaceHistory& surface,
                         EffectHistory& out) {
   const int width = frames.now.view.width;
   for_each_row(frames.now.view.height, [&](int y) {
-    std::fill_n(out.taps[0].row(y), width, Taps{});
-    for (const int c : {kMotionX, kMotionY, kMotionTrust})
-      std::fill_n(out.motion[c].row(y), width, 0.0f);
     const float* depth = frames.now.depth().row(y);
     const Taps* followed = surface.taps[0].row(y);
     for (int x = 0; x < width; ++x) {
-      if (followed[x].any() || !(depth[x] > 0.0f)) continue;
+      if (followed[x].any()) continue;
       glm::vec2 motion_px(0.0f);
-      const Taps taps = dual_taps(frames, surface, x, y, motion_px);
-      if (taps.any()) out.set(x, y, taps, motion_px.x, motion_px.y, 1.0f);
+      Taps taps;
+      if (depth[x] > 0.0f) taps = dual_taps(frames, surface, x, y, motion_px);
+      const float any = taps.any() ? 1.0f : 0.0f;
+      out.set(x, y, taps, any * motion_px.x, any * motion_px.y, any);
     }
   });
 }

@@ -96,6 +96,25 @@ TEST(Accumulate, TrustInAShadowVectorScalesHistory) {
   EXPECT_NEAR(h.now.data[0].at(3, 0), 0.25f + 0.75f * 0.5f, 1e-6f) << "no shadow: by the surface";
 }
 
+TEST(Accumulate, WhatStandsInForTheSurfaceIsAnythingElsewhere) {
+  StillHistory h(4, 1, 1);
+  test::fill(h.noisy[0], 1.0f);
+  test::fill(h.before.samples(), 3.0f);
+  h.before.data[0].at(1, 0) = 0.5f;
+  for (int x = 0; x < 4; ++x) h.follow_shadow(x, 0, 1, 0, test::kNaN);
+  HistorySources sources = h.by_effect();
+  sources.effect_stands_in = true;
+  accumulate(h.guides, h.noisy, sources, {.alpha = 0.1f}, h.before, h.now, nullptr);
+  EXPECT_NEAR(h.now.data[0].at(0, 0), 0.25f, 1e-6f) << "all follow the surface";
+  h.surface.taps[0].at(2, 0) = h.surface.taps[0].at(3, 0) = {};
+  for (const int x : {0, 1}) h.shadow.taps[0].at(x, 0) = {-1, {test::kNaN, 0, 0, test::kNaN}};
+  h.shadow.taps[0].at(3, 0) = {};
+  accumulate(h.guides, h.noisy, sources, {.alpha = 0.1f}, h.before, h.now, nullptr);
+  EXPECT_NEAR(h.now.data[0].at(0, 0), 0.25f, 1e-6f);
+  EXPECT_NEAR(h.now.data[0].at(2, 0), 0.25f + 0.75f * 0.5f, 1e-6f) << "with full trust";
+  EXPECT_EQ(h.now.data[0].at(3, 0), 1.0f) << "a second failure";
+}
+
 /// A 3x3 of noisy values with mean 0.5 and standard deviation 0.1 about pixel (1, 1).
 StillHistory noisy_neighbourhood(int channels) {
   StillHistory h(3, 3, channels);
