@@ -29,7 +29,7 @@ AccumulationLanes choose(const HistorySources& sources, Rectification rectificat
   AccumulationLanes lanes{surface, nullptr, nullptr, clamps(rectification, false),
                           clamps(rectification, true)};
   if (sources.effect != nullptr && sources.effect_stands_in) {
-    lanes.taps = preferred_taps(surface, sources.effect->taps[0].row(y) + x, count, own.taps);
+    lanes.taps = sources.surface->taps_or(sources.effect->taps, x, y, count, own.taps);
     if (lanes.taps == own.taps) {
       for (int i = 0; i < count; ++i)
         own.effect[i] = !surface[i].any() && own.taps[i].any() ? 1.0f : 0.0f;

@@ -30,8 +30,8 @@ const Taps* choose_taps(const SurfaceHistory* surface, const EffectHistory* effe
                         int count, Taps* own) {
   static constexpr Taps kNone[kTapBlock] = {};
   if (surface == nullptr) return kNone;
-  const Taps* first = surface->taps[0].row(y) + x;
-  return effect == nullptr ? first : preferred_taps(first, effect->taps[0].row(y) + x, count, own);
+  if (effect == nullptr) return surface->taps[0].row(y) + x;
+  return surface->taps_or(effect->taps, x, y, count, own);
 }
 
 /// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its

@@ -52,7 +52,12 @@ void trace_dual_history(const FramePair& frames, const SurfaceHistory& surface,
   for_each_row(frames.now.view.height, [&](int y) {
     const float* depth = frames.now.depth().row(y);
     const Taps* followed = surface.taps[0].row(y);
+    constexpr int kBlock = SurfaceHistory::kBlock;
     for (int x = 0; x < width; ++x) {
+      if (x % kBlock == 0 && surface.all_have_taps(x, y, 1)) {
+        x += kBlock - 1;
+        continue;
+      }
       if (followed[x].any()) continue;
       glm::vec2 motion_px(0.0f);
       Taps taps;

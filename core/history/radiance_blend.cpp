@@ -36,9 +36,9 @@ struct RadianceBlend {
   const Taps* taps_of(int k, int x, int y, int count, Taps* own) const {
     const Taps* surface = sources.surface->taps[0].row(y) + x;
     if (sources.effect == nullptr) return surface;
-    const Taps* effect = sources.effect->taps[0].row(y) + x;
-    if (!rule.effect_substitutes) return k == 1 ? effect : surface;
-    return preferred_taps(surface, effect, count, own);
+    if (rule.effect_substitutes)
+      return sources.surface->taps_or(sources.effect->taps, x, y, count, own);
+    return k == 1 ? sources.effect->taps[0].row(y) + x : surface;
   }
 
   void read_row(int y) const {

@@ -9,11 +9,14 @@
 namespace holdfast {
 namespace {
 
+static_assert(kFollowBlock == SurfaceHistory::kBlock);
+
 /// A block of a row on its way to the previous frame.
 struct Lanes {
   int slot[kFollowBlock] = {};  ///< of the surfaces
   std::uint8_t same[kFollowBlock], wanted[kFollowBlock];
   FollowedBlock some, followed;
+  float any[kFollowBlock];  ///< 1: there are taps
 };
 
 /// The motion of those that are `found`; returns whether any of them has not moved.
@@ -33,16 +36,20 @@ bool take_motion(const FollowedBlock& found, int x, int y, int count, SurfaceHis
 
 /// The taps of those that are `found`, of others none. Where both frames show the same surface and
 /// it has not moved they are the pixel itself.
-void take_taps(const FramePair& frames, const FollowedBlock& found, bool any_stays, int x, int y,
-               int count, Taps* taps, const SurfaceHistory& out) {
-  find_block_taps({frames.previous, found, frames.now.id[0].row(y) + x, count, taps});
+void take_taps(const FramePair& frames, Lanes& lanes, bool any_stays, int x, int y, int count,
+               Taps* taps, const SurfaceHistory& out) {
+  const FollowedBlock& found = lanes.followed;
+  find_block_taps(
+      {frames.previous, found, frames.now.id[0].row(y) + x, count, taps, nullptr, lanes.any});
   if (!any_stays) return;
   std::uint8_t same[kFollowBlock];
   same_surface_block(frames.now, frames.previous, x, y, count, same);
   const float *motion_x = out.motion[0].row(y) + x, *motion_y = out.motion[1].row(y) + x;
   for (int i = 0; i < count; ++i)
-    if (found.found[i] != 0.0f && motion_x[i] == 0.0f && motion_y[i] == 0.0f && same[i] != 0)
+    if (found.found[i] != 0.0f && motion_x[i] == 0.0f && motion_y[i] == 0.0f && same[i] != 0) {
       taps[i] = identity_taps(frames.previous, x + i, y);
+      lanes.any[i] = 1.0f;
+    }
 }
 
 /// Puts the client's motion in place of the rigid one.
@@ -140,24 +147,29 @@ void trace_moving(const FramePair& frames, const Plane* given_motion, const Bloc
   for (int i = 0; i < pixels.count; ++i)
     found.found[i] = pixels.depth[i] > 0.0f ? found.found[i] : 0.0f;
   const bool any_stays = take_motion(found, x, y, pixels.count, out);
-  take_taps(frames, found, any_stays, x, y, pixels.count, out.taps[0].row(y) + x, out);
+  take_taps(frames, lanes, any_stays, x, y, pixels.count, out.taps[0].row(y) + x, out);
+  out.complete[0].at(x / SurfaceHistory::kBlock, y) =
+      std::all_of(lanes.any, lanes.any + pixels.count, [](float any) { return any > 0.0f; });
 }
 
 /// Any other block.
-void trace_mixed(const FramePair& frames, const Plane* given_motion, const BlockPixels& pixels,
-                 int x, int y, Lanes& lanes, SurfaceHistory& out) {
+void trace_several(const FramePair& frames, const Plane* given_motion, const BlockPixels& pixels,
+                   int x, int y, Lanes& lanes, SurfaceHistory& out) {
   const bool all_still =
       keep_still(frames, given_motion == nullptr, x, y, pixels.count, lanes, out);
+  Taps* taps = out.taps[0].row(y) + x;
   if (all_still) {
     for (int c = 0; c < 2; ++c) std::fill_n(out.motion[c].row(y) + x, pixels.count, 0.0f);
-    return;
+  } else {
+    follow_objects(frames, given_motion, pixels, x, y, lanes);
+    const bool any_stays = take_motion(lanes.followed, x, y, pixels.count, out);
+    Taps found[kFollowBlock];
+    take_taps(frames, lanes, any_stays, x, y, pixels.count, found, out);
+    for (int i = 0; i < pixels.count; ++i)
+      if (lanes.followed.found[i] != 0.0f) taps[i] = found[i];
   }
-  follow_objects(frames, given_motion, pixels, x, y, lanes);
-  const bool any_stays = take_motion(lanes.followed, x, y, pixels.count, out);
-  Taps taps[kFollowBlock];
-  take_taps(frames, lanes.followed, any_stays, x, y, pixels.count, taps, out);
-  for (int i = 0; i < pixels.count; ++i)
-    if (lanes.followed.found[i] != 0.0f) out.taps[0].at(x + i, y) = taps[i];
+  out.complete[0].at(x / SurfaceHistory::kBlock, y) =
+      std::all_of(taps, taps + pixels.count, [](const Taps& each) { return each.any(); });
 }
 
 }  // namespace
@@ -174,7 +186,7 @@ void trace_surface_history(const FramePair& frames, const Plane* given_motion,
       if (one && (given_motion != nullptr || !frames.scene.object(lanes.slot[0]).at_rest))
         trace_moving(frames, given_motion, pixels, x, y, lanes, out);
       else
-        trace_mixed(frames, given_motion, pixels, x, y, lanes, out);
+        trace_several(frames, given_motion, pixels, x, y, lanes, out);
     }
   });
 }

@@ -1,5 +1,6 @@
 #include "core/history/dual_history.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -69,6 +70,28 @@ TEST(DualHistory, OfAMovingOccluderLeadsFromBackgroundToBackground) {
       ++laid_open;
     }
   EXPECT_GT(laid_open, 50);
+}
+
+TEST(SurfaceHistory, BlocksAreCompleteWhereAllPixelsHaveTaps) {
+  for (const double shift_px : {0.0, 6.0}) {
+    Occlusion o({bar(-1, 1)}, shift_px);
+    o.render();
+    o.run();
+    int complete = 0, others = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; x += SurfaceHistory::kBlock) {
+        const int count = std::min(SurfaceHistory::kBlock, kWidth - x);
+        const Taps* taps = o.surface.taps[0].row(y) + x;
+        const bool all =
+            std::all_of(taps, taps + count, [](const Taps& each) { return each.any(); });
+        ASSERT_EQ(o.surface.all_have_taps(x, y, count), all) << x << ", " << y;
+        ++(all ? complete : others);
+      }
+    EXPECT_GT(complete, 10);
+    EXPECT_EQ(others > 0, shift_px > 0.0);
+    EXPECT_EQ(o.surface.all_have_taps(0, 0, kWidth),
+              o.surface.all_have_taps(0, 0, 1) && o.surface.all_have_taps(kWidth - 1, 0, 1));
+  }
 }
 
 TEST(DualHistory, IsGivenOnlyWhereTheSurfaceVectorFails) {
