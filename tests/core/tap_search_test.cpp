@@ -1,6 +1,8 @@
 #include "core/history/tap_search.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -83,6 +85,44 @@ TEST(TapSearch, FindsWhatIsFoundForOnePixelOnEveryInstructionSet) {
         }
       }
     }
+}
+
+TEST(TapSearch, LeavesOutWhatIsOfAnotherRoughnessOnEveryInstructionSet) {
+  const test::IsaGuard guard;
+  Random random(63);
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 6}, {70, 11}}) {
+    Guides guides = rough_wall(width, height, random);
+    guides.roughness = Channels<float>(width, height, 1);
+    test::fill_random(guides.roughness[0], random, 0, 0.5f);
+    const Row row(guides, random, true);
+    float roughness[kFollowBlock];
+    for (float& wanted : roughness) wanted = random.real(0, 0.5f);
+    int kept = 0, left_out = 0;
+    for (const Isa isa : available_isas()) {
+      select_isa(isa);
+      Taps got[kFollowBlock];
+      float any[kFollowBlock];
+      find_block_taps({guides, row.followed, row.id, kFollowBlock, got, roughness, any});
+      for (int i = 0; i < kFollowBlock; ++i) {
+        Taps want;
+        if (row.followed.found[i] > 0.0f)
+          want = find_taps(guides, row.followed.x[i], row.followed.y[i],
+                           receiver_of(row.followed, i, row.id[i]));
+        if (want.any()) {
+          const float there = gather(std::as_const(guides.roughness)[0], want);
+          const bool same = std::abs(there - roughness[i]) <= kTapRoughnessTolerance;
+          ++(same ? kept : left_out);
+          if (!same) want = Taps{};
+        }
+        expect_same(got[i], want, isa, i);
+        ASSERT_EQ(any[i], want.any() ? 1.0f : 0.0f) << isa_name(isa) << ", lane " << i;
+      }
+    }
+    if (width > 1) {
+      EXPECT_GT(kept, 0);
+      EXPECT_GT(left_out, 0);
+    }
+  }
 }
 
 /// Taps of a row whose offsets follow one another in `runs` pieces, with gaps.
