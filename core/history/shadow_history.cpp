@@ -20,6 +20,7 @@ struct Lanes {
   std::uint8_t own[kFollowBlock];                     ///< follows its own blocked sample
   std::uint8_t wanted[kFollowBlock];                  ///< not followed yet
   int surface[kFollowBlock], occluder[kFollowBlock];  ///< slots
+  FollowedBlock some, followed;
 };
 
 /// Chooses what the pixels from (x, y) on follow; false if none has a shadow to follow.
@@ -49,26 +50,79 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
   return true;
 }
 
-/// Writes the history of the pixels from (x, y) on whose shadows are `found`.
+/// Whether all that are wanted lie on one object in the shadow of one object: those of `first`.
+bool is_one_pair(const Lanes& lanes, int first, int count) {
+  for (int i = first + 1; i < count; ++i)
+    if (lanes.wanted[i] &&
+        (lanes.surface[i] != lanes.surface[first] || lanes.occluder[i] != lanes.occluder[first]))
+      return false;
+  return true;
+}
+
+/// Follows all that are wanted.
+void follow(const ShadowTracer& tracer, ShadowRule rule, const BlockPixels& pixels, int x, int y,
+            Lanes& lanes) {
+  const std::uint8_t* own = rule == ShadowRule::kPaper ? lanes.own : nullptr;
+  FollowedBlock& followed = lanes.followed;
+  const int first = static_cast<int>(std::find_if(lanes.wanted, lanes.wanted + pixels.count,
+                                                  [](std::uint8_t wanted) { return wanted != 0; }) -
+                                     lanes.wanted);
+  if (is_one_pair(lanes, first, pixels.count)) {
+    tracer.follow_block(pixels, x, y, lanes.ratio, own, lanes.surface[first], lanes.occluder[first],
+                        followed);
+    for (int i = 0; i < pixels.count; ++i) {
+      followed.found[i] = lanes.wanted[i] ? followed.found[i] : 0.0f;
+      followed.sweep[i] = lanes.wanted[i] ? followed.sweep[i] : kNoBlockerSweep;
+    }
+    return;
+  }
+  std::fill_n(followed.found, pixels.count, 0.0f);
+  std::fill_n(followed.sweep, pixels.count, kNoBlockerSweep);
+  for (int i = first; i < pixels.count; ++i) {
+    if (!lanes.wanted[i]) continue;
+    const int surface = lanes.surface[i], occluder = lanes.occluder[i];
+    tracer.follow_block(pixels, x, y, lanes.ratio, own, surface, occluder, lanes.some);
+    for (int k = i; k < pixels.count; ++k) {
+      if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
+        continue;
+      lanes.wanted[k] = 0;
+      followed.sweep[k] = lanes.some.sweep[k];
+      if (lanes.some.found[k] != 0.0f) copy_lane(lanes.some, k, followed, k);
+    }
+  }
+}
+
+/// Writes the history of the pixels from (x, y) on that have been followed.
 void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, int x, int y,
           int count, EffectHistory& out) {
-  const bool paper = rule == ShadowRule::kPaper;
-  Taps taps[kFollowBlock];
-  const std::uint32_t* id = frames.now.id[0].row(y) + x;
-  const TapSearch search{frames.previous, found, id, count, taps};
-  if (paper)
+  float any[kFollowBlock], trust[kFollowBlock];
+  const TapSearch search{
+      frames.previous, found, frames.now.id[0].row(y) + x, count, out.taps[0].row(y) + x,
+      nullptr,         any};
+  if (rule == ShadowRule::kPaper) {
     find_block_taps_on_any_surface(search);
-  else
-    find_block_taps(search);
-  float trust[kFollowBlock];
-  if (paper)
     shadow_falloff({frames.previous, found, count, trust});
-  else
+  } else {
+    find_block_taps(search);
     std::fill_n(trust, count, 1.0f);
-  for (int i = 0; i < count; ++i)
-    if (found.found[i] != 0.0f)
-      out.set(x + i, y, taps[i], found.x[i] - (static_cast<float>(x + i) + 0.5f),
-              found.y[i] - (static_cast<float>(y) + 0.5f), taps[i].any() ? trust[i] : 0.0f);
+  }
+  float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
+        *motion_trust = out.motion[kMotionTrust].row(y) + x;
+  const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
+  for (int i = 0; i < count; ++i) {
+    const bool there = found.found[i] != 0.0f;
+    motion_x[i] = there ? found.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
+    motion_y[i] = there ? found.y[i] - row : 0.0f;
+    motion_trust[i] = any[i] > 0.0f ? trust[i] : 0.0f;
+  }
+  std::copy_n(found.sweep, count, out.motion[kMotionSweep].row(y) + x);
+}
+
+/// No shadow to follow.
+void take_none(int x, int y, int count, EffectHistory& out) {
+  std::fill_n(out.taps[0].row(y) + x, count, Taps{});
+  for (int c = 0; c < kMotionChannels; ++c)
+    std::fill_n(out.motion[c].row(y) + x, count, c == kMotionSweep ? kNoBlockerSweep : 0.0f);
 }
 
 }  // namespace
@@ -78,33 +132,16 @@ void trace_shadow_history(const FramePair& frames, const ShadowTracer& tracer, S
                           ChannelView<const float> own_ratio, EffectHistory& out) {
   const Guides& now = frames.now;
   for_each_row(now.view.height, [&](int y) {
-    Lanes lanes;
-    FollowedBlock found{}, followed{};
+    Lanes lanes{};
     for (int x = 0; x < now.view.width; x += kFollowBlock) {
       const BlockPixels pixels(now, x, y, std::min(kFollowBlock, now.view.width - x));
-      std::fill_n(out.taps[0].row(y) + x, pixels.count, Taps{});
-      for (int c = 0; c < kMotionChannels; ++c)
-        std::fill_n(out.motion[c].row(y) + x, pixels.count,
-                    c == kMotionSweep ? kNoBlockerSweep : 0.0f);
       if (!choose(frames, tracer, rule, x, y, pixels.count, valid.row(y) + x, ratio.row(y) + x,
-                  own_ratio.row(y) + x, lanes))
+                  own_ratio.row(y) + x, lanes)) {
+        take_none(x, y, pixels.count, out);
         continue;
-      std::fill_n(followed.found, pixels.count, 0.0f);
-      for (int i = 0; i < pixels.count; ++i) {
-        if (!lanes.wanted[i]) continue;
-        const int surface = lanes.surface[i], occluder = lanes.occluder[i];
-        tracer.follow_block(pixels, x, y, lanes.ratio,
-                            rule == ShadowRule::kPaper ? lanes.own : nullptr, surface, occluder,
-                            found);
-        for (int k = i; k < pixels.count; ++k) {
-          if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
-            continue;
-          lanes.wanted[k] = 0;
-          out.motion[kMotionSweep].at(x + k, y) = found.sweep[k];
-          if (found.found[k] != 0.0f) copy_lane(found, k, followed, k);
-        }
       }
-      take(frames, rule, followed, x, y, pixels.count, out);
+      follow(tracer, rule, pixels, x, y, lanes);
+      take(frames, rule, lanes.followed, x, y, pixels.count, out);
     }
   });
 }
