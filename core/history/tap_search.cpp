@@ -160,7 +160,7 @@ HOLDFAST_INLINE void test_receivers(const TapSearch& a, const Shown& shown, Foun
   }
 }
 
-/// The same, of those that show no surface.
+/// Takes the weight from the pixels at (dx, dy) of the four that show no surface.
 HOLDFAST_INLINE void test_surfaces(const TapSearch& a, int dx, int dy, FoundTaps& out) {
   float depth[kFollowBlock];
   fetch(out.lanes, a.previous.depth().data + dy * a.previous.depth().stride + dx, depth);
