@@ -26,6 +26,7 @@
 #include "core/frame/error.h"
 #include "core/frame/lent_images.h"
 #include "core/history/guide_pair.h"
+#include "core/history/unlit.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/parallel.h"
 
@@ -213,13 +214,13 @@ class Denoiser::Impl {
     timer.end("input", 2 * scratch.noisy.count());
     if (!rest.watches(k)) return false;
     const Plane* unshadowed = unshadowed_of(frame, entry);
-    if (entry.half) half.take_signal(scratch.noisy);
     const int channels = channel_count(id.kind);
+    if (entry.half) half.take_signal(scratch.noisy, channels);
     const bool holds =
         rest.holds(k,
                    {entry.half ? half.guides() : guides.now(), filters[k].kept_floats(),
                     entry.half ? half.scratch().noisy : scratch.noisy, channels},
-                   unshadowed);
+                   entry.half ? half.take_plane(unshadowed) : unshadowed);
     const bool passes = holds && rest.may_pass(k);
     if (passes) {
       rest.repeat(k, guides.now(), scratch.noisy, unshadowed, results);
@@ -238,20 +239,21 @@ class Denoiser::Impl {
                      StageTimer& timer) {
     const Plan::Entry& entry = plan.components[k];
     ComponentFilter& component_filter = filters[k];
-    const FramePair frames{guides.now(), guides.previous(), scene};
     const PlaneId id = signals[k];
     Plane& out = results.add(id, config.width, config.height);
+    const ComponentInput input = input_of(frame, entry, report, timer);
     if (entry.half) {
-      ComponentInput input = half.take(entry, scratch.noisy, frame.planes, timer);
-      input.key = {config.seed, frame.index};
+      const ComponentInput halved = half.take(entry, input, scratch.noisy);
       timer.end("halve", 10);
       timer.size_images(0.25);
-      component_filter.run(input, half.scratch(), half.result(id));
+      component_filter.run(halved, half.scratch(), half.result(id));
       timer.size_images(1);
       half.upsample_result(id, guides.now(), scratch.noisy, out);
+      if (input.unshadowed != nullptr)
+        pass_unlit(*input.unshadowed, std::as_const(scratch.noisy)[0], out.channel(0));
       timer.end("upsample", 10);
     } else {
-      component_filter.run(full_input(frame, frames, entry, report, timer), scratch, out);
+      component_filter.run(input, scratch, out);
     }
     note_history(component_filter, report);
     if (component_filter.changed_share() > 0)
@@ -275,10 +277,10 @@ class Denoiser::Impl {
     return sent != nullptr ? sent : shaded.find(id);
   }
 
-  /// The input of a component of the frame's own resolution.
-  ComponentInput full_input(const Frame& frame, const FramePair& frames, const Plan::Entry& entry,
-                            FrameReport& report, StageTimer& timer) {
-    ComponentInput input{.frames = frames, .timer = timer};
+  /// What a frame says of a component, at the frame's own resolution.
+  ComponentInput input_of(const Frame& frame, const Plan::Entry& entry, FrameReport& report,
+                          StageTimer& timer) {
+    ComponentInput input{.frames = {guides.now(), guides.previous(), scene}, .timer = timer};
     if (has_past) input.surface = &surface;
     input.key = {config.seed, frame.index};
     input.gradients = entry.gradients;

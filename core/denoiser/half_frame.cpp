@@ -1,8 +1,8 @@
 #include "core/denoiser/half_frame.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "core/kernels/parallel.h"
 #include "core/spatial/upsample.h"
@@ -10,21 +10,19 @@
 namespace holdfast {
 namespace {
 
-constexpr PlaneKind kHits[] = {PlaneKind::kGlossyDirection, PlaneKind::kGlossyHitDistance,
-                               PlaneKind::kGlossyHitId};
-
-bool is_of_hits(PlaneKind kind) {
-  return std::find(std::begin(kHits), std::end(kHits), kind) != std::end(kHits);
-}
-
-bool uses_hits(const Plan::Entry& entry) {
-  return entry.component.kind == ComponentKind::kGlossy &&
-         (entry.has_footprint || entry.follows_effect);
-}
-
-bool uses_hits(const Plan& plan) {
-  return std::any_of(plan.components.begin(), plan.components.end(),
-                     [](const Plan::Entry& entry) { return entry.half && uses_hits(entry); });
+/// Whether a component reads input plane `id` besides its samples.
+bool reads(const Plan::Entry& entry, PlaneId id) {
+  const bool glossy = entry.component.kind == ComponentKind::kGlossy;
+  switch (id.kind) {
+    case PlaneKind::kGlossyDirection:
+    case PlaneKind::kGlossyHitDistance:
+    case PlaneKind::kGlossyHitId: return glossy && (entry.has_footprint || entry.follows_effect);
+    case PlaneKind::kBlockerDistance:
+    case PlaneKind::kLightSample:
+    case PlaneKind::kBlockerId: return entry.has_footprint && id.component == entry.component;
+    case PlaneKind::kUnshadowed: return entry.leaves_out_unlit && id.component == entry.component;
+    default: return false;
+  }
 }
 
 }  // namespace
@@ -39,9 +37,15 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
   if (plan.history) surface_ = SurfaceHistory(width_, height_, kLent);
   for (const Plan::Entry& entry : plan.components)
     if (entry.half) planes_.add(component_plane(entry.component), width_, height_, kLent);
-  for (const PlaneId id : config.planes)
-    if (id.kind == PlaneKind::kMotion || (is_of_hits(id.kind) && uses_hits(plan)))
-      planes_.add(id, width_, height_, kLent);
+  std::vector<PlaneId> inputs = config.planes;
+  for (const std::uint32_t light : plan.shaded_lights)
+    inputs.push_back(PlaneId::of_light(PlaneKind::kUnshadowed, light));
+  for (const PlaneId id : inputs) {
+    const bool read = std::any_of(
+        plan.components.begin(), plan.components.end(),
+        [&](const Plan::Entry& entry) { return entry.half && reads(entry, id); });
+    if (read || id.kind == PlaneKind::kMotion) planes_.add(id, width_, height_, kLent);
+  }
   if (std::none_of(plan.components.begin(), plan.components.end(),
                    [](const Plan::Entry& entry) { return entry.half && entry.cones; }))
     return;
@@ -59,7 +63,7 @@ void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const Plan
   guides_.keep();
   scratch_.window.weights.clear();
   if (!has_past) return;
-  const Plane* motion = halved(PlaneKind::kMotion, planes);
+  const Plane* motion = take_plane(planes.find({PlaneKind::kMotion, {}}));
   if (motion != nullptr) halve_vectors();
   trace_surface_history({guides_.now(), guides_.previous(), scene_}, motion, surface_);
 }
@@ -79,10 +83,10 @@ void HalfFrame::take_guides(const Guides& full, HalfGrid& grid, Guides& half) {
   halve_guides(full, grid, half);
 }
 
-/// The representatives of a plane, or null if the session lacks it.
-const Plane* HalfFrame::halved(PlaneKind kind, const PlaneSet& planes) {
-  Plane* half = planes_.find({kind, {}});
-  if (half != nullptr) halve_plane(planes.at({kind, {}}), grid_, *half);
+const Plane* HalfFrame::take_plane(const Plane* full) {
+  if (full == nullptr) return nullptr;
+  Plane* half = planes_.find(full->id());
+  halve_plane(*full, grid_, *half);
   return half;
 }
 
@@ -112,21 +116,26 @@ void HalfFrame::take_samples(const Channels<float>& noisy, const Plane& directio
   });
 }
 
-ComponentInput HalfFrame::take(const Plan::Entry& entry, const Channels<float>& noisy,
-                               const PlaneSet& planes, StageTimer& timer) {
-  ComponentInput input{.frames = {guides_.now(), guides_.previous(), scene_}, .timer = timer};
-  if (has_past_) input.surface = &surface_;
+ComponentInput HalfFrame::take(const Plan::Entry& entry, const ComponentInput& full,
+                               const Channels<float>& noisy) {
+  ComponentInput half{.frames = {guides_.now(), guides_.previous(), scene_},
+                      .surface = has_past_ ? &surface_ : nullptr,
+                      .light = full.light,
+                      .timer = full.timer,
+                      .key = full.key};
   if (entry.cones) {
-    take_samples(noisy, planes.at({PlaneKind::kIndirectDirection, {}}));
-    input.cone_samples = cone_samples_;
-    input.quads = &grid_;
+    take_samples(noisy, *full.cone_samples[0].directions);
+    half.cone_samples = cone_samples_;
+    half.quads = &grid_;
   } else {
-    take_signal(noisy);
+    take_signal(noisy, channel_count(component_plane(entry.component).kind));
   }
-  if (uses_hits(entry))
-    input.reflections = {halved(kHits[0], planes), halved(kHits[1], planes),
-                         halved(kHits[2], planes)};
-  return input;
+  const auto& [direction, distance, hit] = full.reflections;
+  half.reflections = {take_plane(direction), take_plane(distance), take_plane(hit)};
+  const auto& [blocker_distance, sample, blocker] = full.blockers;
+  half.blockers = {take_plane(blocker_distance), take_plane(sample), take_plane(blocker)};
+  half.unshadowed = take_plane(full.unshadowed);
+  return half;
 }
 
 void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy,

@@ -31,13 +31,18 @@ class HalfFrame {
   Guides last_guides() const { return guides_.last(); }
   std::size_t kept_guide_bytes() const { return guides_.kept_bytes(); }
 
-  /// Takes a component's samples `noisy`, of the frame's size, and what of `planes` belongs to
-  /// them. Returns its input; `scratch().noisy` holds the quads' means.
-  ComponentInput take(const Plan::Entry& entry, const Channels<float>& noisy,
-                      const PlaneSet& planes, StageTimer& timer);
+  /// Takes the input of a component of the frame's size, whose samples are `noisy`. Returns what it
+  /// is here; `scratch().noisy` holds the quads' means.
+  ComponentInput take(const Plan::Entry& entry, const ComponentInput& full,
+                      const Channels<float>& noisy);
 
-  /// Takes the samples alone, into `scratch().noisy`, by the quads of this frame.
-  void take_signal(const Channels<float>& noisy) { halve_signal(noisy, 3, grid_, scratch_.noisy); }
+  /// Takes the samples alone, `channels` of them, into `scratch().noisy`, by the quads of this
+  /// frame.
+  void take_signal(const Channels<float>& noisy, int channels) {
+    halve_signal(noisy, channels, grid_, scratch_.noisy);
+  }
+  /// The representatives of a plane of the frame's size that a component here reads; null of null.
+  const Plane* take_plane(const Plane* full);
 
   /// Where the component's filter writes.
   Plane& result(PlaneId id) { return *planes_.find(id); }
@@ -59,7 +64,6 @@ class HalfFrame {
  private:
   static void take_guides(const Guides& full, HalfGrid& grid, Guides& half);
   void take_samples(const Channels<float>& noisy, const Plane& directions);
-  const Plane* halved(PlaneKind kind, const PlaneSet& planes);
   void halve_vectors();
 
   int width_ = 0, height_ = 0;

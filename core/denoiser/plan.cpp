@@ -74,7 +74,7 @@ void check_planes(const DenoiserConfig& config) {
 
 bool is_halved(const Preset& preset, ComponentKind kind) {
   switch (kind) {
-    case ComponentKind::kVisibility: return false;
+    case ComponentKind::kVisibility: return preset.half_visibility;
     case ComponentKind::kGlossy: return preset.half_glossy;
     case ComponentKind::kIndirect: return preset.half_indirect;
   }
@@ -106,7 +106,7 @@ void deal_turns(Plan& plan) {
       if ((entry.component.kind != ComponentKind::kVisibility) != radiance) continue;
       const auto least = std::min_element(cost.begin(), cost.end());
       entry.turn = static_cast<int>(least - cost.begin());
-      *least += radiance && !entry.half ? 3 : radiance ? 1 : 2;  // about, as measured
+      *least += entry.half ? 1 : radiance ? 3 : 2;  // about, as measured
     }
 }
 
@@ -178,8 +178,9 @@ HistoryExtras Plan::extras_of(int channels) const {
 Recipe Plan::recipe_of(const Entry& entry) const {
   Recipe own = recipe;
   if (!entry.half) return own;
-  own.radiance_filter.levels = std::max(own.radiance_filter.levels - 1, 1);
-  own.svgf_levels = std::max(own.svgf_levels - 1, 1);
+  for (int* levels :
+       {&own.visibility_filter.levels, &own.radiance_filter.levels, &own.svgf_levels})
+    *levels = std::max(*levels - 1, 1);
   return own;
 }
 

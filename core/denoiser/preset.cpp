@@ -21,6 +21,7 @@ std::vector<Preset> make_presets() {
                     .indirect_basis = RadianceBasis::kIrradiance,
                     .half_indirect = true,
                     .half_glossy = true,
+                    .half_visibility = true,
                     .rest_turns = kRestTurns};
   const Preset balanced{.name = "balanced", .rest_turns = kRestTurns};
   const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
@@ -64,7 +65,7 @@ void choose_basis(const DenoiserConfig& config, Preset& preset) {
 void choose_resolution(const DenoiserConfig& config, Preset& preset) {
   const std::vector<std::string>& names = config.half_resolution;
   if (names.empty()) return;
-  preset.half_indirect = preset.half_glossy = false;
+  preset.half_indirect = preset.half_glossy = preset.half_visibility = false;
   for (const std::string& name : names) {
     if (std::count(names.begin(), names.end(), name) > 1)
       throw InputError("half resolution of " + name, "must be listed once", "listed twice");
@@ -75,8 +76,11 @@ void choose_resolution(const DenoiserConfig& config, Preset& preset) {
       preset.half_indirect = true;
     } else if (name == "glossy") {
       preset.half_glossy = true;
+    } else if (name == "visibility") {
+      preset.half_visibility = true;
     } else {
-      throw InputError("half resolution", "must be of indirect, glossy or none", "'" + name + "'");
+      throw InputError("half resolution", "must be of indirect, glossy, visibility or none",
+                       "'" + name + "'");
     }
   }
 }

@@ -17,6 +17,7 @@ struct Preset {
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;                     ///< indirect light is filtered at half resolution
   bool half_glossy = false;                       ///< reflections likewise
+  bool half_visibility = false;                   ///< shadows of every light likewise
   HistoryFormat history = HistoryFormat::kFloat;  ///< of recipes that keep one, but for those that
                                                   ///< keep moments of the luminance, as floats
   bool oracle = false;  ///< in double, pixel by pixel, without the kernels (core/oracle): slow

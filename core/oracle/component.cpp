@@ -46,6 +46,13 @@ Image repeated(const Image& half, const Surfaces& full, double factor) {
   return out;
 }
 
+template <class Body>
+void for_each_unlit(const Image& lit, const Body& body) {
+  for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
+    if (lit.at(x, y) == 0) body(x, y);
+  });
+}
+
 double mean_on_surfaces(const Surfaces& now, const Image& image) {
   double sum = 0, pixels = 0;
   for_each_pixel(now.width, now.height, [&](int x, int y) {
@@ -130,11 +137,11 @@ ComponentOracle::Result ComponentOracle::run(const FrameView& view, const Frame&
     antilag = antilag_of(view.now, frame.planes.at({PlaneKind::kGradient, entry_.component}),
                          recipe_.gradient_levels, out.repaired_gradients);
   run_chain(view, frame.planes, {config_.seed, frame.index}, samples, nullptr,
-            entry_.gradients ? &antilag : nullptr, out);
+            lit_of(view, frame.planes), entry_.gradients ? &antilag : nullptr, out);
   return out;
 }
 
-ComponentOracle::Result ComponentOracle::run_halved(const HalfFrame& half, const Surfaces& full,
+ComponentOracle::Result ComponentOracle::run_halved(const HalfFrame& half, const FrameView& full,
                                                     const Frame& frame) {
   Result out;
   const Image noisy = load_signal(frame.planes.at(component_plane(entry_.component)), out.repaired);
@@ -147,17 +154,20 @@ ComponentOracle::Result ComponentOracle::run_halved(const HalfFrame& half, const
     if (cones_) pixel.direction = pixel_of_quads(directions, half.quads(), k);
   }
   const FrameView view = half.view();
-  run_chain(view, half.planes(), {config_.seed, frame.index}, samples, &half.quads(), nullptr, out);
-  out.filtered = upsample(full, view.now, out.filtered, noisy);
-  out.motion = repeated(out.motion, full, 2);
-  out.frames = repeated(out.frames, full, 1);
-  out.weight = repeated(out.weight, full, 1);
+  const Image lit = lit_of(full, frame.planes);
+  run_chain(view, half.planes(), {config_.seed, frame.index}, samples, &half.quads(),
+            representatives(lit, half.quads()), nullptr, out);
+  out.filtered = upsample(full.now, view.now, out.filtered, noisy);
+  for_each_unlit(lit, [&](int x, int y) { out.filtered.at(x, y) = noisy.at(x, y); });
+  out.motion = repeated(out.motion, full.now, 2);
+  out.frames = repeated(out.frames, full.now, 1);
+  out.weight = repeated(out.weight, full.now, 1);
   return out;
 }
 
 void ComponentOracle::run_chain(const FrameView& view, const PlaneSet& planes, const FrameKey& key,
-                                Samples& samples, const Quads* quads, const Image* antilag,
-                                Result& out) {
+                                Samples& samples, const Quads* quads, const Image& lit,
+                                const Image* antilag, Result& out) {
   Input input = input_of(planes);
   if (input.shadow) input.shadow->places = view.scene.light(entry_.component.light);
   std::optional<Past> effect;
@@ -176,7 +186,7 @@ void ComponentOracle::run_chain(const FrameView& view, const PlaneSet& planes, c
   if (sources.surface != nullptr) sources.antilag = antilag;
   Blended blended = blend(view, noisy, sources, statistics);
   history_ = std::move(blended.now);
-  out.filtered = filter_lit(view, planes, noisy, statistics);
+  out.filtered = filter_lit(view, lit, noisy, statistics);
   out.motion = std::move(blended.motion);
   out.frames = std::move(blended.frames);
   out.weight = std::move(blended.weight);
@@ -186,17 +196,11 @@ void ComponentOracle::run_chain(const FrameView& view, const PlaneSet& planes, c
 
 /// Filters the history. Where a light sends nothing, its visibility is passed through, and says
 /// next to nothing to its neighbours and nothing to later frames.
-Image ComponentOracle::filter_lit(const FrameView& view, const PlaneSet& planes, const Image& noisy,
+Image ComponentOracle::filter_lit(const FrameView& view, const Image& lit, const Image& noisy,
                                   const Statistics& statistics) {
-  const Image lit = lit_of(view, planes);
-  const auto for_each_unlit = [&](const auto& body) {
-    for_each_pixel(lit.width(), lit.height(), [&](int x, int y) {
-      if (lit.at(x, y) == 0) body(x, y);
-    });
-  };
-  for_each_unlit([&](int x, int y) { history_.samples.at(x, y) = double{kUnlitSamples}; });
+  for_each_unlit(lit, [&](int x, int y) { history_.samples.at(x, y) = double{kUnlitSamples}; });
   Image out = filter(view, statistics);
-  for_each_unlit([&](int x, int y) {
+  for_each_unlit(lit, [&](int x, int y) {
     history_.samples.at(x, y) = 0;
     out.at(x, y) = noisy.at(x, y);
   });

@@ -29,7 +29,7 @@ class ComponentOracle {
   /// client sent it.
   Result run(const FrameView& view, const Frame& frame);
   /// The same at half resolution: results are of the frame's size.
-  Result run_halved(const HalfFrame& half, const Surfaces& full, const Frame& frame);
+  Result run_halved(const HalfFrame& half, const FrameView& full, const Frame& frame);
 
   const Plan::Entry& entry() const { return entry_; }
   std::size_t bytes() const;
@@ -37,9 +37,11 @@ class ComponentOracle {
  private:
   struct Input;
   using Samples = std::vector<DirectedSamples>;  ///< of each pixel, or of each one of the quads
-  /// The chain of either resolution, but for loading and repair of samples and gradients.
+  /// The chain of either resolution, but for loading and repair of samples and gradients. `lit`: 1
+  /// where the component's light reaches the surface; empty: not known.
   void run_chain(const FrameView& view, const PlaneSet& planes, const FrameKey& key,
-                 Samples& samples, const Quads* quads, const Image* antilag, Result& out);
+                 Samples& samples, const Quads* quads, const Image& lit, const Image* antilag,
+                 Result& out);
   Input input_of(const PlaneSet& planes) const;
   Image field_of(const FrameView& view, const Input& input) const;
   bool follows(const FrameView& view) const;
@@ -48,7 +50,7 @@ class ComponentOracle {
   Blended blend(const FrameView& view, const Image& noisy, const Sources& sources,
                 const Statistics& statistics) const;
   Image filter(const FrameView& view, const Statistics& statistics);
-  Image filter_lit(const FrameView& view, const PlaneSet& planes, const Image& noisy,
+  Image filter_lit(const FrameView& view, const Image& lit, const Image& noisy,
                    const Statistics& statistics);
   Image lit_of(const FrameView& view, const PlaneSet& planes) const;
 

@@ -78,7 +78,7 @@ std::vector<Image> FrameOracle::filter_components(const FrameView& view, const F
   for (ComponentOracle& oracle : components_) {
     const Component component = oracle.entry().component;
     ComponentOracle::Result result =
-        oracle.entry().half ? oracle.run_halved(half_, view.now, frame) : oracle.run(view, frame);
+        oracle.entry().half ? oracle.run_halved(half_, view, frame) : oracle.run(view, frame);
     add_repairs(report, component_plane(component), result.repaired);
     add_repairs(report, {PlaneKind::kGradient, component}, result.repaired_gradients);
     if (result.changed_share > 0) report.changes.push_back({component, result.changed_share});

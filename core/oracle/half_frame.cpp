@@ -1,12 +1,16 @@
 #include "core/oracle/half_frame.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace holdfast::oracle {
 namespace {
 
-constexpr PlaneKind kRead[] = {PlaneKind::kMotion, PlaneKind::kGlossyDirection,
-                               PlaneKind::kGlossyHitDistance, PlaneKind::kGlossyHitId};
+constexpr PlaneKind kRead[] = {PlaneKind::kMotion,          PlaneKind::kGlossyDirection,
+                               PlaneKind::kGlossyHitDistance, PlaneKind::kGlossyHitId,
+                               PlaneKind::kBlockerDistance, PlaneKind::kLightSample,
+                               PlaneKind::kBlockerId};
 
 }  // namespace
 
@@ -17,9 +21,9 @@ void HalfFrame::advance(const Surfaces& full, const Scene& scene, const PlaneSet
   now_ = halved(full, quads_);
   scene_ = scene.halved();
   has_past_ = has_past;
-  for (const PlaneKind kind : kRead)
-    if (const Plane* plane = planes.find({kind, {}}))
-      planes_.add(plane->id(), quads_.width, quads_.height) = halved(*plane, quads_);
+  for (const Plane& plane : planes)
+    if (std::find(std::begin(kRead), std::end(kRead), plane.id().kind) != std::end(kRead))
+      planes_.add(plane.id(), quads_.width, quads_.height) = halved(plane, quads_);
   Plane* motion = planes_.find({PlaneKind::kMotion, {}});
   if (motion != nullptr)
     for_each_pixel(quads_.width, quads_.height, [&](int x, int y) {

@@ -107,6 +107,16 @@ Plane halved(const Plane& full, const Quads& quads) {
   return half;
 }
 
+Image representatives(const Image& full, const Quads& quads) {
+  if (!full) return {};
+  Image out(quads.width, quads.height, full.channels());
+  for_each_pixel(quads.width, quads.height, [&](int x, int y) {
+    const glm::ivec2 p = quads.representative(x, y);
+    for (int c = 0; c < full.channels(); ++c) out.at(x, y, c) = full.at(p.x, p.y, c);
+  });
+  return out;
+}
+
 Image pixel_of_quads(const Image& full, const Quads& quads, int k) {
   Image out(quads.width, quads.height, full.channels());
   for_each_pixel(quads.width, quads.height, [&](int x, int y) {

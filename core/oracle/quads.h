@@ -27,6 +27,9 @@ Surfaces halved(const Surfaces& full, const Quads& quads);
 /// The representatives' values of any plane.
 Plane halved(const Plane& full, const Quads& quads);
 
+/// The representatives' values of an image; of an empty one, an empty one.
+Image representatives(const Image& full, const Quads& quads);
+
 /// Pixel `k` of each quad, 0 where it is not of the quad's surface.
 Image pixel_of_quads(const Image& full, const Quads& quads, int k);
 /// Means over the pixels of the quads' surfaces, given an image for each pixel of the quads.
