@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/kernels/parallel.h"
-#include "core/spatial/upsample.h"
 
 namespace holdfast {
 namespace {
@@ -31,6 +30,7 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
     : width_(half_size(config.width)),
       height_(half_size(config.height)),
       grid_(config.width, config.height, Memory::kLent),
+      upsampling_(config.width, config.height, Memory::kLent),
       guides_(width_, height_, plan.roughness, plan.motion, plan.history_format),
       scratch_(width_, height_, plan, plan.half, config.debug_planes) {
   constexpr auto kLent = Memory::kLent;
@@ -41,9 +41,9 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
   for (const std::uint32_t light : plan.shaded_lights)
     inputs.push_back(PlaneId::of_light(PlaneKind::kUnshadowed, light));
   for (const PlaneId id : inputs) {
-    const bool read = std::any_of(
-        plan.components.begin(), plan.components.end(),
-        [&](const Plan::Entry& entry) { return entry.half && reads(entry, id); });
+    const bool read =
+        std::any_of(plan.components.begin(), plan.components.end(),
+                    [&](const Plan::Entry& entry) { return entry.half && reads(entry, id); });
     if (read || id.kind == PlaneKind::kMotion) planes_.add(id, width_, height_, kLent);
   }
   if (std::none_of(plan.components.begin(), plan.components.end(),
@@ -58,6 +58,7 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
 void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes,
                         bool has_past) {
   has_past_ = has_past;
+  found_upsampling_ = false;
   scene_.follow_halved(scene);
   take_guides(full, grid_, guides_.advance(has_past));
   guides_.keep();
@@ -140,17 +141,17 @@ ComponentInput HalfFrame::take(const Plan::Entry& entry, const ComponentInput& f
 
 void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy,
                                 Plane& out) {
+  if (!found_upsampling_) upsampling_.find(full, guides_.now());
+  found_upsampling_ = true;
   const Plane& half = planes_.at(id);
-  Upsample pass;
-  pass.full = &full;
-  pass.half = &guides_.now();
-  pass.channels = half.channels();
+  Upsampling::Signal signal;
+  signal.channels = half.channels();
   for (int c = 0; c < half.channels(); ++c) {
-    pass.in[c] = half.channel(c);
-    pass.beyond[c] = noisy[c];
-    pass.out[c] = out.channel(c);
+    signal.in[c] = half.channel(c);
+    signal.beyond[c] = noisy[c];
+    signal.out[c] = out.channel(c);
   }
-  upsample(pass);
+  upsampling_.run(signal);
 }
 
 }  // namespace holdfast

@@ -4,6 +4,7 @@
 #include "core/denoiser/plan.h"
 #include "core/history/guide_pair.h"
 #include "core/spatial/half_grid.h"
+#include "core/spatial/upsample.h"
 
 namespace holdfast {
 
@@ -46,13 +47,15 @@ class HalfFrame {
 
   /// Where the component's filter writes.
   Plane& result(PlaneId id) { return *planes_.find(id); }
-  /// Brings that result to the frame's size; pixels without surface show `noisy`.
+  /// Brings that result to the frame's size; pixels without surface show `noisy`. `full`: the
+  /// guides of this frame.
   void upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy, Plane& out);
 
   Scratch& scratch() { return scratch_; }
   /// Calls `visit` for all images of `h`, a HalfFrame.
   static void each_image(auto& h, auto&& visit) {
     HalfGrid::each_image(h.grid_, visit);
+    Upsampling::each_image(h.upsampling_, visit);
     GuidePair::each_image(h.guides_, visit);
     SurfaceHistory::each_image(h.surface_, visit);
     Scratch::each_image(h.scratch_, visit);
@@ -68,6 +71,8 @@ class HalfFrame {
 
   int width_ = 0, height_ = 0;
   HalfGrid grid_;
+  Upsampling upsampling_;
+  bool found_upsampling_ = false;  ///< of this frame
   GuidePair guides_;
   bool has_past_ = false;
   SceneMotion scene_;

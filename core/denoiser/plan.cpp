@@ -178,8 +178,7 @@ HistoryExtras Plan::extras_of(int channels) const {
 Recipe Plan::recipe_of(const Entry& entry) const {
   Recipe own = recipe;
   if (!entry.half) return own;
-  for (int* levels :
-       {&own.visibility_filter.levels, &own.radiance_filter.levels, &own.svgf_levels})
+  for (int* levels : {&own.visibility_filter.levels, &own.radiance_filter.levels, &own.svgf_levels})
     *levels = std::max(*levels - 1, 1);
   return own;
 }

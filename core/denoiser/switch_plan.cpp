@@ -13,20 +13,10 @@ namespace {
 void upsample_history(const ComponentHistory& half, const Guides& half_guides,
                       const Guides& full_guides, ComponentHistory& full) {
   const Channels<float> nothing(full.data.width(), full.data.height(), 1);
-  const int count = half.data.count();
-  for (int first = 0; first < count;) {
-    Upsample pass;
-    pass.full = &full_guides;
-    pass.half = &half_guides;
-    pass.channels = count - first >= 3 ? 3 : 1;
-    for (int c = 0; c < pass.channels; ++c) {
-      pass.in[c] = half.data[first + c];
-      pass.beyond[c] = nothing[0];
-      pass.out[c] = full.data[first + c];
-    }
-    upsample(pass);
-    first += pass.channels;
-  }
+  Upsampling upsampling(full.data.width(), full.data.height());
+  upsampling.find(full_guides, half_guides);
+  for (int c = 0; c < half.data.count(); ++c)
+    upsampling.run({1, {half.data[c]}, {nothing[0]}, {full.data[c]}});
 }
 
 /// A filter of `next` that keeps the same in another format.

@@ -7,10 +7,10 @@
 namespace holdfast::oracle {
 namespace {
 
-constexpr PlaneKind kRead[] = {PlaneKind::kMotion,          PlaneKind::kGlossyDirection,
-                               PlaneKind::kGlossyHitDistance, PlaneKind::kGlossyHitId,
-                               PlaneKind::kBlockerDistance, PlaneKind::kLightSample,
-                               PlaneKind::kBlockerId};
+constexpr PlaneKind kRead[] = {
+    PlaneKind::kMotion,      PlaneKind::kGlossyDirection, PlaneKind::kGlossyHitDistance,
+    PlaneKind::kGlossyHitId, PlaneKind::kBlockerDistance, PlaneKind::kLightSample,
+    PlaneKind::kBlockerId};
 
 }  // namespace
 

@@ -42,13 +42,16 @@ struct World {
   }
 
   void run(int channels = 3) {
-    Upsample pass{&full, &half, channels, {}, {}, {}};
+    Upsampling upsampling(full.view.width, full.view.height);
+    upsampling.find(full, half);
+    Upsampling::Signal signal;
+    signal.channels = channels;
     for (int c = 0; c < channels; ++c) {
-      pass.in[c] = in[c];
-      pass.beyond[c] = beyond[c];
-      pass.out[c] = out[c];
+      signal.in[c] = in[c];
+      signal.beyond[c] = beyond[c];
+      signal.out[c] = out[c];
     }
-    upsample(pass);
+    upsampling.run(signal);
   }
 };
 
@@ -122,7 +125,7 @@ TEST(Upsample, AgreesWithTheOracleAtEverySizeOnEveryInstructionSet) {
           for (int x = 0; x < width; ++x) {
             if (!(world.full.depth().at(x, y) > 0.0f)) continue;
             const Oracle::Mean m = oracle.mean(x, y, 1);
-            if (m.weight < 2 * double{kLeastWeight}) continue;
+            if (m.weight < 2 * double{Upsampling::kLeastWeight}) continue;
             ++compared;
             // Rounding of the exponent, 1e-4 at most, shifts a mean of values in 0..1 by less.
             ASSERT_NEAR(double{world.out[1].at(x, y)}, m.value, 1e-4)
