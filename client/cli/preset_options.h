@@ -19,8 +19,8 @@ inline void add_preset_options(CLI::App& command, std::string& preset, std::stri
                      "irradiance, luminance-cones or cones; default: the preset's");
   command
       .add_option("--half-resolution", half_resolution,
-                  "components filtered at half resolution, with commas between: indirect, glossy; "
-                  "or none; default: the preset's")
+                  "components filtered at half resolution, with commas between: indirect, glossy, "
+                  "visibility; or none; default: the preset's")
       ->delimiter(',');
   command.add_option("--history", history,
                      "how histories are kept: f16 (16 bits a signal, 8 a statistic) or f32; "

@@ -12,6 +12,10 @@ namespace {
 constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::kConesLuminance,
                                     RadianceBasis::kConesColour};
 
+/// At half resolution: indirect light, reflections, shadows.
+constexpr bool kHalves[][3] = {{true, true, true},   {true, true, false},  {true, false, false},
+                               {false, true, false}, {false, false, true}, {false, false, false}};
+
 TradeSetting setting_of(const DenoiserConfig& scene, const std::string& recipe,
                         const Preset& parts) {
   TradeSetting setting;
@@ -19,8 +23,7 @@ TradeSetting setting_of(const DenoiserConfig& scene, const std::string& recipe,
   setting.point.kernel_radius = parts.kernel_radius;
   setting.point.more_levels = parts.more_levels;
   setting.point.basis = basis_name(parts.indirect_basis);
-  setting.point.half_indirect = parts.half_indirect;
-  setting.point.half_glossy = parts.half_glossy;
+  setting.point.half = half_names(parts);
   setting.point.history = history_name(parts.history);
   setting.config = scene;
   setting.config.recipe = recipe;
@@ -36,8 +39,7 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
   config.kernel_radius = parts.kernel_radius;
   config.more_levels = parts.more_levels - find_preset(scene).more_levels;
   config.indirect_basis = basis_name(parts.indirect_basis);
-  if (parts.half_indirect) config.half_resolution.push_back("indirect");
-  if (parts.half_glossy) config.half_resolution.push_back("glossy");
+  config.half_resolution = half_names(parts);
   if (config.half_resolution.empty()) config.half_resolution.push_back("none");
   config.history = history_name(parts.history);
   return setting;
@@ -45,8 +47,7 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
 
 bool same_parts(const measure::TradePoint& a, const measure::TradePoint& b) {
   return a.recipe == b.recipe && a.kernel_radius == b.kernel_radius &&
-         a.more_levels == b.more_levels && a.basis == b.basis &&
-         a.half_indirect == b.half_indirect && a.half_glossy == b.half_glossy &&
+         a.more_levels == b.more_levels && a.basis == b.basis && a.half == b.half &&
          a.history == b.history;
 }
 
@@ -60,15 +61,15 @@ void add_once(std::vector<TradeSetting>& settings, TradeSetting setting) {
 void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
                std::vector<TradeSetting>& settings) {
   for (const int radius : {1, 2})
-    for (const RadianceBasis basis : kBases)
-      for (const bool half_indirect : {true, false})
-        for (const bool half_glossy : {true, false})
-          add_once(settings, free_setting(scene, recipe,
-                                          {.name = {},
-                                           .kernel_radius = radius,
-                                           .indirect_basis = basis,
-                                           .half_indirect = half_indirect,
-                                           .half_glossy = half_glossy}));
+    for (const RadianceBasis basis : kBases) {
+      Preset parts{.name = {}, .kernel_radius = radius, .indirect_basis = basis};
+      for (const auto& [indirect, glossy, visibility] : kHalves) {
+        parts.half_indirect = indirect;
+        parts.half_glossy = glossy;
+        parts.half_visibility = visibility;
+        add_once(settings, free_setting(scene, recipe, parts));
+      }
+    }
   for (const Preset& preset : all_presets())
     for (const int more : {-1, 1}) {
       Preset other = preset;

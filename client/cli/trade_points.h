@@ -16,9 +16,9 @@ struct TradeSetting {
 
 /// What a scene's sequence is tried with: every preset of each recipe but
 /// `reference`, presets first; and of the
-/// first recipe also every kernel, basis of indirect light and choice of half resolution, and one
-/// a-trous level less and more, and the other precision of histories, in each of its presets.
-/// `scene`: size, lights and planes. Throws InputError for an unknown recipe.
+/// first recipe also every kernel and basis of indirect light at six choices of half resolution,
+/// and one a-trous level less and more, and the other precision of histories, in each of its
+/// presets. `scene`: size, lights and planes. Throws InputError for an unknown recipe.
 std::vector<TradeSetting> trade_settings(const DenoiserConfig& scene,
                                          const std::vector<std::string>& recipes);
 

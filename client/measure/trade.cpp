@@ -20,8 +20,7 @@ const TradePoint* same_setting(const std::vector<TradePoint>& points, const Trad
   for (const TradePoint& other : points)
     if (other.wire == point.wire && other.recipe == point.recipe &&
         other.kernel_radius == point.kernel_radius && other.more_levels == point.more_levels &&
-        other.basis == point.basis && other.half_indirect == point.half_indirect &&
-        other.half_glossy == point.half_glossy && other.history == point.history)
+        other.basis == point.basis && other.half == point.half && other.history == point.history)
       return &other;
   return nullptr;
 }
@@ -72,10 +71,8 @@ std::string point_name(const TradePoint& point) {
   if (point.more_levels != 0)
     name += (point.more_levels > 0 ? " +" : " ") + std::to_string(point.more_levels) + " levels";
   if (!point.basis.empty()) name += " " + point.basis;
-  if (point.half_indirect && point.half_glossy)
-    name += " half";
-  else
-    name += point.half_indirect ? " half indirect" : point.half_glossy ? " half glossy" : "";
+  for (const std::string& component : point.half)
+    name += (&component == &point.half.front() ? " half " : ", ") + component;
   return point.history.empty() ? name : name + " " + point.history;
 }
 

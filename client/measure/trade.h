@@ -14,7 +14,7 @@ struct TradePoint {
   int more_levels = 0;               ///< beside those of the recipe
   std::string basis;                 ///< of indirect light, as DenoiserConfig names it; the
                                      ///< preset's is that of recipes that keep cones
-  bool half_indirect = false, half_glossy = false;
+  std::vector<std::string> half;     ///< components at half resolution, as DenoiserConfig has them
   std::string history;         ///< its precision, as DenoiserConfig names it; the preset's is that
                                ///< of recipes that keep no moments
   std::string wire = "exact";  ///< profile that its frames and results have been through

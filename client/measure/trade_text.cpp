@@ -18,9 +18,6 @@ bool on_front(const TradeScene& scene, std::size_t k) {
 }
 
 nlohmann::ordered_json point_json(const TradePoint& point) {
-  nlohmann::ordered_json half = nlohmann::ordered_json::array();
-  if (point.half_indirect) half.push_back("indirect");
-  if (point.half_glossy) half.push_back("glossy");
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const TradePoint::Stage& stage : point.stages) stages[stage.name] = stage.ms;
   return {{"name", point_name(point)},
@@ -29,7 +26,7 @@ nlohmann::ordered_json point_json(const TradePoint& point) {
           {"kernel_radius", point.kernel_radius},
           {"more_levels", point.more_levels},
           {"indirect_basis", point.basis},
-          {"half_resolution", half},
+          {"half_resolution", point.half},
           {"history", point.history},
           {"wire", point.wire},
           {"ms", point.ms},

@@ -22,9 +22,9 @@ struct DenoiserConfig {
   /// Instead of the preset's choice: "irradiance", "luminance-cones" or "cones"; empty = its
   /// choice.
   std::string indirect_basis;
-  /// Likewise the components filtered at half resolution: of "indirect" and "glossy", each at most
-  /// once, or "none" alone; empty = the preset's choice. A component that the session lacks, or
-  /// that has gradient samples, is not affected.
+  /// Likewise the components filtered at half resolution: of "indirect", "glossy" and
+  /// "visibility" (of all lights), each at most once, or "none" alone; empty = the preset's choice.
+  /// A component that the session lacks, or that has gradient samples, is not affected.
   std::vector<std::string> half_resolution;
   /// Likewise how histories are kept: "f16" (signals in 16 bits, statistics in 8, with exponents
   /// common to 64 pixels) or "f32"; empty = the preset's choice. `reference` keeps doubles in any

@@ -137,6 +137,14 @@ void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
     recipe.indirect_basis = preset.indirect_basis;
 }
 
+std::vector<std::string> half_names(const Preset& preset) {
+  std::vector<std::string> names;
+  if (preset.half_indirect) names.emplace_back("indirect");
+  if (preset.half_glossy) names.emplace_back("glossy");
+  if (preset.half_visibility) names.emplace_back("visibility");
+  return names;
+}
+
 const char* history_name(HistoryFormat format) {
   switch (format) {
     case HistoryFormat::kNone: return "none";

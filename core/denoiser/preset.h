@@ -38,6 +38,9 @@ Preset find_preset(const DenoiserConfig& config);
 /// Puts the preset's choices into a recipe; `force_basis`: also if the recipe keeps no cones.
 void apply(const Preset& preset, bool force_basis, Recipe& recipe);
 
+/// Components at half resolution, as DenoiserConfig::half_resolution has them; empty: none.
+std::vector<std::string> half_names(const Preset& preset);
+
 /// Name of a format, as DenoiserConfig::history has it.
 const char* history_name(HistoryFormat format);
 

@@ -1,55 +1,124 @@
 #include "core/spatial/half_grid.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "core/kernels/parallel.h"
+#include "core/kernels/variants.h"
 
 namespace holdfast {
 namespace {
 
 constexpr float kMostDepthChange = 0.25f;  // of the depth, where a surface is seen edge-on; ours
 
-/// Where the ray of half pixel (x, y) meets the tangent plane of the surface (px, py) of `full`.
-float depth_in_the_middle(const Guides& full, int px, int py, const PixelRays<float>& rays, int x,
-                          int y) {
-  const float depth = full.depth().at(px, py);
-  const glm::vec3 n = full.normal_at(px, py);
-  const glm::vec3 lateral = rays.lateral_0 + (static_cast<float>(x) + 0.5f) * rays.lateral_x +
-                            (static_cast<float>(y) + 0.5f) * rays.lateral_y;
-  const float along = rays.far_weight * glm::dot(n, lateral) + glm::dot(n, rays.forward);
-  const float offset =
-      glm::dot(n, full.position_at(px, py)) - rays.near_weight * glm::dot(n, lateral);
-  const float found = offset / along;
-  if (!std::isfinite(found)) return depth;
-  return std::clamp(found, (1.0f - kMostDepthChange) * depth, (1.0f + kMostDepthChange) * depth);
+/// One channel of a row of half pixels: of four values each, those of the representatives.
+struct ChoiceRow {
+  const std::uint32_t* chosen;         ///< 0..3
+  const std::uint32_t *upper, *lower;  ///< rows of the full image; twice the upper one at its end
+  int width;                           ///< of the full image
+  std::uint32_t* out;
+};
+
+HOLDFAST_INLINE void choose_row_body(const ChoiceRow& a) {
+  const std::uint32_t* __restrict chosen = a.chosen, * __restrict upper = a.upper, * __restrict lower = a.lower;
+  std::uint32_t* __restrict out = a.out;
+  const int whole = a.width / 2;
+#pragma GCC ivdep
+  for (int x = 0; x < whole; ++x) {
+    const std::uint32_t k = chosen[x], left_above = upper[2 * x], right_above = upper[2 * x + 1],
+                        left_below = lower[2 * x], right_below = lower[2 * x + 1];
+    const std::uint32_t above = (k & 1u) != 0 ? right_above : left_above;
+    const std::uint32_t below = (k & 1u) != 0 ? right_below : left_below;
+    out[x] = k >= 2 ? below : above;
+  }
+  if (a.width % 2 == 1) out[whole] = (chosen[whole] >= 2 ? lower : upper)[2 * whole];
 }
 
-/// Calls body(x, y, px, py) for every pixel of the half image and its representative (px, py).
-template <class Body>
-void for_each_representative(const HalfGrid& grid, const Body& body) {
-  const auto chosen = grid.representative[0];
-  for_each_row(chosen.height, [&](int y) {
-    for (int x = 0; x < chosen.width; ++x) {
-      const auto k = static_cast<int>(chosen.at(x, y));
-      body(x, y, 2 * x + k % 2, 2 * y + k / 2);
-    }
-  });
+HOLDFAST_KERNEL(choose_row, ChoiceRow)
+
+/// One row of half pixels (x, y) whose representatives have `normal`, and `depth` each, which is
+/// moved to where the ray of the half pixel meets their tangent plane.
+struct MiddleRow {
+  PixelRays<float> full, half;
+  int y, width;
+  const std::uint32_t* chosen;
+  const float* normal[3];
+  float* depth;
+};
+
+HOLDFAST_INLINE void move_to_middle_body(const MiddleRow& a) {
+  const std::uint32_t* __restrict chosen = a.chosen;
+  const float* __restrict nx = a.normal[0], * __restrict ny = a.normal[1], * __restrict nz = a.normal[2];
+  float* __restrict depths = a.depth;
+  const float near_weight = a.half.near_weight, far_weight = a.half.far_weight;
+  const float fx = a.half.forward.x, fy = a.half.forward.y, fz = a.half.forward.z;
+  const float row = static_cast<float>(a.y) + 0.5f, upper = 2.0f * static_cast<float>(a.y) + 0.5f;
+  const glm::vec3 h0 = a.half.lateral_0 + row * a.half.lateral_y, hx = a.half.lateral_x;
+  const glm::vec3 p0 = a.full.lateral_0 + upper * a.full.lateral_y, px = a.full.lateral_x,
+                  py = a.full.lateral_y;
+  const float h0x = h0.x, h0y = h0.y, h0z = h0.z, hxx = hx.x, hxy = hx.y, hxz = hx.z;
+  const float p0x = p0.x, p0y = p0.y, p0z = p0.z, pxx = px.x, pxy = px.y, pxz = px.z, pyx = py.x,
+              pyy = py.y, pyz = py.z;
+#pragma GCC ivdep
+  for (int x = 0; x < a.width; ++x) {
+    const auto k = static_cast<std::int32_t>(chosen[x]);
+    const float depth = depths[x];
+    const float middle = static_cast<float>(x) + 0.5f;
+    const float lateral =
+        nx[x] * (h0x + middle * hxx) + ny[x] * (h0y + middle * hxy) + nz[x] * (h0z + middle * hxz);
+    const float forward = nx[x] * fx + ny[x] * fy + nz[x] * fz;
+    const float at = static_cast<float>(2 * x + (k & 1)) + 0.5f;
+    const float below = static_cast<float>(k >> 1);
+    const float scale = near_weight + far_weight * depth;
+    const float point = nx[x] * (scale * (p0x + at * pxx + below * pyx) + depth * fx) +
+                        ny[x] * (scale * (p0y + at * pxy + below * pyy) + depth * fy) +
+                        nz[x] * (scale * (p0z + at * pxz + below * pyz) + depth * fz);
+    const float found = (point - near_weight * lateral) / (far_weight * lateral + forward);
+    const float least = (1.0f - kMostDepthChange) * depth, most = (1.0f + kMostDepthChange) * depth;
+    const float kept = found < least ? least : (found > most ? most : found);
+    const float moved = abs_of(found) <= std::numeric_limits<float>::max() ? kept : depth;
+    depths[x] = depth > 0.0f ? moved : 0.0f;
+  }
+}
+
+HOLDFAST_KERNEL(move_to_middle, MiddleRow)
+
+/// Row y of the representatives of one channel.
+void choose_row_of(const HalfGrid& grid, const ChannelView<const std::uint32_t>& full, int y,
+                   std::uint32_t* out) {
+  const int below = std::min(2 * y + 1, full.height - 1);
+  choose_row({grid.representative[0].row(y), full.row(2 * y), full.row(below), full.width, out});
+}
+
+void choose_row_of(const HalfGrid& grid, const ChannelView<const float>& full, int y, float* out) {
+  const auto words = [](const float* row) { return reinterpret_cast<const std::uint32_t*>(row); };
+  const int below = std::min(2 * y + 1, full.height - 1);
+  choose_row({grid.representative[0].row(y), words(full.row(2 * y)), words(full.row(below)),
+              full.width, reinterpret_cast<std::uint32_t*>(out)});
 }
 
 }  // namespace
 
 void halve_guides(const Guides& full, const HalfGrid& grid, Guides& half) {
-  for_each_representative(grid, [&](int x, int y, int px, int py) {
-    const bool surface = full.depth().at(px, py) > 0.0f;
-    half.depth_normal[0].at(x, y) =
-        surface ? depth_in_the_middle(full, px, py, half.rays, x, y) : 0.0f;
-    for (int axis = 0; axis < 3; ++axis)
-      half.depth_normal[1 + axis].at(x, y) = full.normal(axis).at(px, py);
-    half.id[0].at(x, y) = full.id[0].at(px, py);
-    if (half.roughness) half.roughness[0].at(x, y) = full.roughness[0].at(px, py);
-    if (half.motion)
-      for (int c = 0; c < 2; ++c) half.motion[c].at(x, y) = 0.5f * full.motion[c].at(px, py);
+  for_each_row(grid.representative.height(), [&](int y) {
+    const int width = grid.representative.width();
+    for (int c = 0; c < 4; ++c)
+      choose_row_of(grid, full.depth_normal[c], y, half.depth_normal[c].row(y));
+    move_to_middle({full.rays,
+                    half.rays,
+                    y,
+                    width,
+                    grid.representative[0].row(y),
+                    {half.normal(0).row(y), half.normal(1).row(y), half.normal(2).row(y)},
+                    half.depth_normal[0].row(y)});
+    choose_row_of(grid, full.id[0], y, half.id[0].row(y));
+    if (half.roughness) choose_row_of(grid, full.roughness[0], y, half.roughness[0].row(y));
+    if (!half.motion) return;
+    for (int c = 0; c < 2; ++c) {
+      float* motion = half.motion[c].row(y);
+      choose_row_of(grid, full.motion[c], y, motion);
+      for (int x = 0; x < width; ++x) motion[x] *= 0.5f;
+    }
   });
 }
 
@@ -89,12 +158,10 @@ void mean_of_quads(const Channels<float>* const (&pixels)[HalfGrid::kQuad], int 
 }
 
 void halve_plane(const Plane& full, const HalfGrid& grid, Plane& half) {
-  for (int c = 0; c < full.channels(); ++c) {
-    const auto in = full.words(c);
-    const auto out = half.words(c);
-    for_each_representative(grid,
-                            [&](int x, int y, int px, int py) { out.at(x, y) = in.at(px, py); });
-  }
+  for_each_row(grid.representative.height(), [&](int y) {
+    for (int c = 0; c < full.channels(); ++c)
+      choose_row_of(grid, full.words(c), y, half.words(c).row(y));
+  });
 }
 
 }  // namespace holdfast

@@ -49,7 +49,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
     EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
   }
   for (const char* name : {"reliable fast", "reliable balanced", "reliable accurate", "clamp fast",
-                           "reliable 3x3 cones half f32"})
+                           "reliable 3x3 cones half indirect, glossy, visibility f32"})
     EXPECT_TRUE(names.contains(name)) << name;
   const auto& balanced = point_of(scene["points"], "reliable balanced");
   const auto& compact = point_of(scene["wire"], "reliable balanced, wire compact");

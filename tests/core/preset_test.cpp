@@ -57,13 +57,15 @@ TEST(Preset, WhatAConfigurationChoosesReplacesThePresetsChoice) {
     return count;
   };
   DenoiserConfig config = config_of("fast");
-  EXPECT_EQ(halves(config), 2);
+  EXPECT_EQ(halves(config), 4) << "two lights";
   config.half_resolution = {"none"};
   EXPECT_EQ(halves(config), 0);
   config = config_of("balanced");
   config.half_resolution = {"indirect"};
   EXPECT_EQ(halves(config), 1);
   config.half_resolution = {"indirect", "glossy"};
+  EXPECT_EQ(halves(config), 2);
+  config.half_resolution = {"visibility"};
   EXPECT_EQ(halves(config), 2);
   config.indirect_basis = "irradiance";
   EXPECT_EQ(Plan::make(config).recipe.indirect_basis, RadianceBasis::kIrradiance);
@@ -89,7 +91,7 @@ TEST(Preset, WrongChoicesAreRefusedByName) {
   refuses([](DenoiserConfig& c) { c.indirect_basis = "sh"; }, "indirect basis",
           "irradiance, luminance-cones, cones", "'sh'");
   refuses([](DenoiserConfig& c) { c.half_resolution = {"shadow"}; }, "half resolution",
-          "indirect, glossy or none", "'shadow'");
+          "indirect, glossy, visibility or none", "'shadow'");
   refuses([](DenoiserConfig& c) { c.kernel_radius = 3; }, "kernel radius", "1 or 2", "3");
   refuses([](DenoiserConfig& c) { c.more_levels = 2; }, "more levels", "-3..1", "2");
   refuses(
@@ -148,12 +150,13 @@ TEST(Preset, HalfResolutionGoesWithEveryRecipeAndBasis) {
 TEST(Preset, HalfResolutionHoldsLessAndSaysSo) {
   DenoiserConfig config = config_of("balanced");
   const Denoiser whole(config);
-  config.half_resolution = {"indirect", "glossy"};
+  config.half_resolution = {"indirect", "glossy", "visibility"};
   const Denoiser half(config);
   EXPECT_LT(half.memory_bytes(), whole.memory_bytes());
   EXPECT_EQ(whole.plan_text().find("half resolution"), std::string::npos);
   EXPECT_NE(half.plan_text().find("indirect: at half resolution"), std::string::npos);
   EXPECT_NE(half.plan_text().find("glossy: at half resolution"), std::string::npos);
+  EXPECT_NE(half.plan_text().find("light0.visibility: at half resolution"), std::string::npos);
 }
 
 TEST(Preset, ThePlanSaysWhatPassesMoveAndBuffersHold) {

@@ -131,7 +131,7 @@ TEST(SharedScratch, NothingOfWhatItHeldShowsUnderAnyPresetBasisOrResolution) {
           config.indirect_basis = basis;
           config.debug_planes = true;
           config.half_resolution = {"none"};
-          if (half) config.half_resolution = {"indirect", "glossy"};
+          if (half) config.half_resolution = {"indirect", "glossy", "visibility"};
           EXPECT_TRUE(ignores_what_scratch_holds(config))
               << preset << ' ' << history << ' ' << basis << (half ? " half" : "");
         }

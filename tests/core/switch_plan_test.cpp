@@ -93,6 +93,7 @@ TEST(SetPreset, BeforeTheFirstFrameIsAsIfMadeWithIt) {
 
 TEST(SetPreset, AnotherKernelTouchesNoHistory) {
   DenoiserConfig config = test::shadow_config();
+  config.half_resolution = {"none"};
   Denoiser steady(config), switched(config);
   for (int index = 0; index < 6; ++index) {
     switched.set_preset(index % 3 == 1 ? "fast" : "accurate");

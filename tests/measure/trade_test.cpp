@@ -78,7 +78,7 @@ TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
   TradeScene two{"two", "", 8, 8, {point("reliable", 2, 0.01, {"balanced"})}};
   TradeScene three = one;
   TradePoint half = point("reliable", 5, 0.2, {"fast"});
-  half.half_glossy = true;
+  half.half = {"glossy"};
   three.points.push_back(half);
   half.ms = 4;
   half.rmse = 0.02;
@@ -119,13 +119,13 @@ TEST(Trade, NamesAreThoseOfPresetsElseOfWhatIsChosen) {
   p.presets.clear();
   p.kernel_radius = 1;
   p.more_levels = -1;
-  p.half_indirect = true;
+  p.half = {"indirect"};
   EXPECT_EQ(point_name(p), "reliable 3x3 -1 levels cones half indirect");
-  p.half_glossy = true;
+  p.half = {"indirect", "glossy"};
   p.more_levels = 1;
-  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half");
+  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half indirect, glossy");
   p.history = "f32";
-  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half f32");
+  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half indirect, glossy f32");
 }
 
 TEST(TradePlot, HasAPointForEachSettingAndANameForEachPreset) {

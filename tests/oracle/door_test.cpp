@@ -64,7 +64,7 @@ TEST_F(Door, ResetAndCutForgetHistory) {
 }
 
 TEST_F(Door, ReferenceFiltersAtHalfResolutionWhatASessionAsksFor) {
-  config.half_resolution = {"indirect", "glossy"};
+  config.half_resolution = {"indirect", "glossy", "visibility"};
   Denoiser denoiser(config);
   const std::size_t before = denoiser.memory_bytes();
   for (std::size_t k = 0; k < 3; ++k) {

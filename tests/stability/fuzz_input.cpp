@@ -117,8 +117,10 @@ void choose_preset(DenoiserConfig& config, Random& random) {
   };
   if (chance(random, 0.3))
     config.indirect_basis = choose({"irradiance", "luminance-cones", "cones", "cubes"});
-  if (chance(random, 0.4)) config.half_resolution = {choose({"indirect", "glossy", "none", "all"})};
-  if (chance(random, 0.1)) config.half_resolution = {"indirect", choose({"glossy", "indirect"})};
+  if (chance(random, 0.4))
+    config.half_resolution = {choose({"indirect", "glossy", "visibility", "none", "all"})};
+  if (chance(random, 0.1))
+    config.half_resolution = {"indirect", choose({"glossy", "visibility", "indirect"})};
   if (chance(random, 0.3)) config.kernel_radius = whole(random, 0, 2);
   if (chance(random, 0.2)) config.more_levels = whole(random, -3, 1);
 }

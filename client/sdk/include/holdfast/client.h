@@ -65,8 +65,8 @@ struct SessionOptions {
   std::string recipe;           ///< empty = the server's default
   std::string preset;           ///< empty = the server's default
   std::string indirect_basis;   ///< "irradiance", "luminance-cones", "cones"; empty = the preset's
-  std::vector<std::string> half_resolution;  ///< of "indirect" and "glossy", or "none"; empty = the
-                                             ///< preset's
+  std::vector<std::string> half_resolution;  ///< of "indirect", "glossy", "visibility", or "none";
+                                             ///< empty = the preset's
   std::string history;                       ///< "f16" or "f32"; empty = the preset's
   std::uint64_t seed = 0;                    ///< the same seed gives the same bits
   bool debug_planes = false;  ///< also motion, history and confidence of each component
