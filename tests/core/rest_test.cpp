@@ -183,19 +183,24 @@ TEST(Rest, RepairsAndCountsBadValuesAsEver) {
   }
 }
 
-TEST(Rest, EndsWhereLightReachesASurfaceForTheFirstTime) {
-  RestWorld world;
-  RestingSession session(world);
-  Frame frame = world.frame(session.next);
-  for (int c = 0; c < 3; ++c)
-    frame.planes.find(test::of_light(PlaneKind::kUnshadowed))->channel(c).at(20, 20) = 0;
-  const auto shadow_is_passed_over = [&] { return rested(session.report, kShadow); };
-  session.filter(frame);
-  EXPECT_FALSE(shadow_is_passed_over());
-  EXPECT_TRUE(rested(session.report, test::kGlossyPlane) ||
-              rested(session.report, test::kIndirectPlane));
-  session.step();
-  EXPECT_FALSE(shadow_is_passed_over());
+TEST(Rest, EndsWhereLightReachesASurfaceForTheFirstTimeAtAnyResolution) {
+  for (const char* preset : {"balanced", "fast"}) {
+    SCOPED_TRACE(preset);
+    RestWorld world;
+    world.config.preset = preset;
+    RestingSession session(world);
+    Frame frame = world.frame(session.next);
+    // At half resolution (20, 20) is what represents its quad.
+    for (int c = 0; c < 3; ++c)
+      frame.planes.find(test::of_light(PlaneKind::kUnshadowed))->channel(c).at(20, 20) = 0;
+    const auto shadow_is_passed_over = [&] { return rested(session.report, kShadow); };
+    session.filter(frame);
+    EXPECT_FALSE(shadow_is_passed_over());
+    EXPECT_TRUE(rested(session.report, test::kGlossyPlane) ||
+                rested(session.report, test::kIndirectPlane));
+    session.step();
+    EXPECT_FALSE(shadow_is_passed_over());
+  }
 }
 
 /// The mean of a component's plane over the wall, over that of its truth where `share` of the light
