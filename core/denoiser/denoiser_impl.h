@@ -194,7 +194,7 @@ class Denoiser::Impl {
   void follow_surfaces(const Frame& frame, bool halved, StageTimer& timer) {
     if (halved && !followed_half) {
       half.advance(guides.now(), scene, frame.planes, has_past);
-      timer.end("half", 16);
+      timer.end("half", 24);
       followed_half = true;
     }
     if (!halved && !followed_full && has_past) {
@@ -248,10 +248,10 @@ class Denoiser::Impl {
       timer.size_images(0.25);
       component_filter.run(halved, half.scratch(), half.result(id));
       timer.size_images(1);
-      half.upsample_result(id, guides.now(), scratch.noisy, out);
+      half.upsample_result(id, scratch.noisy, out);
       if (input.unshadowed != nullptr)
         pass_unlit(*input.unshadowed, std::as_const(scratch.noisy)[0], out.channel(0));
-      timer.end("upsample", 10);
+      timer.end("upsample", 3 + 2 * out.channels());
     } else {
       component_filter.run(input, scratch, out);
     }

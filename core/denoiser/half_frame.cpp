@@ -58,10 +58,10 @@ HalfFrame::HalfFrame(const DenoiserConfig& config, const Plan& plan)
 void HalfFrame::advance(const Guides& full, const SceneMotion& scene, const PlaneSet& planes,
                         bool has_past) {
   has_past_ = has_past;
-  found_upsampling_ = false;
   scene_.follow_halved(scene);
   take_guides(full, grid_, guides_.advance(has_past));
   guides_.keep();
+  upsampling_.find(full, guides_.now());
   scratch_.window.weights.clear();
   if (!has_past) return;
   const Plane* motion = take_plane(planes.find({PlaneKind::kMotion, {}}));
@@ -139,10 +139,7 @@ ComponentInput HalfFrame::take(const Plan::Entry& entry, const ComponentInput& f
   return half;
 }
 
-void HalfFrame::upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy,
-                                Plane& out) {
-  if (!found_upsampling_) upsampling_.find(full, guides_.now());
-  found_upsampling_ = true;
+void HalfFrame::upsample_result(PlaneId id, const Channels<float>& noisy, Plane& out) const {
   const Plane& half = planes_.at(id);
   Upsampling::Signal signal;
   signal.channels = half.channels();

@@ -47,9 +47,8 @@ class HalfFrame {
 
   /// Where the component's filter writes.
   Plane& result(PlaneId id) { return *planes_.find(id); }
-  /// Brings that result to the frame's size; pixels without surface show `noisy`. `full`: the
-  /// guides of this frame.
-  void upsample_result(PlaneId id, const Guides& full, const Channels<float>& noisy, Plane& out);
+  /// Brings that result to the frame's size; pixels without surface show `noisy`.
+  void upsample_result(PlaneId id, const Channels<float>& noisy, Plane& out) const;
 
   Scratch& scratch() { return scratch_; }
   /// Calls `visit` for all images of `h`, a HalfFrame.
@@ -72,7 +71,6 @@ class HalfFrame {
   int width_ = 0, height_ = 0;
   HalfGrid grid_;
   Upsampling upsampling_;
-  bool found_upsampling_ = false;  ///< of this frame
   GuidePair guides_;
   bool has_past_ = false;
   SceneMotion scene_;

@@ -147,14 +147,14 @@ void RestTurns::repeat(std::size_t k, const Guides& guides, const Channels<float
     const bool shown = kept.id() == members_[k].signal;
     for_each_row(kept.height(), [&](int y) {
       const float* depth = guides.depth().row(y);
+      int beyond = 0;
+      for (int x = 0; shown && x < kept.width(); ++x) beyond += depth[x] > 0.0f ? 0 : 1;
       for (int c = 0; c < kept.channels(); ++c) {
-        const float *from = kept.channel(c).row(y), *sent = shown ? noisy[c].row(y) : from;
         float* to = out.channel(c).row(y);
-#pragma GCC ivdep
-        for (int x = 0; x < kept.width(); ++x) {
-          const float surface = from[x], beyond = sent[x];
-          to[x] = depth[x] > 0.0f ? surface : beyond;
-        }
+        std::copy_n(kept.channel(c).row(y), kept.width(), to);
+        if (beyond == 0) continue;
+        const float* sent = noisy[c].row(y);
+        for (int x = 0; x < kept.width(); ++x) to[x] = depth[x] > 0.0f ? to[x] : sent[x];
       }
     });
     if (shown && unshadowed != nullptr) pass_unlit(*unshadowed, noisy[0], out.channel(0));

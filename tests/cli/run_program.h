@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -68,13 +69,15 @@ class Program {
     const std::size_t from = at + key.size();
     return all.substr(from, all.find(' ', from) - from);
   }
-  /// Waits until it has printed `part`; false after ten seconds.
+  /// Waits until it has printed `part`; false after two minutes: a sanitized server
+  /// takes long to start beside others.
   bool wait_for(const std::string& part) const {
-    for (int i = 0; i < 1000; ++i) {
-      if (text().find(part) != std::string::npos) return true;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+    while (text().find(part) == std::string::npos) {
+      if (std::chrono::steady_clock::now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return false;
+    return true;
   }
 
  private:
