@@ -178,7 +178,7 @@ TEST_F(Replay, EndsWithTwoAndNamesAWrongArgument) {
   EXPECT_EQ(replay({"--indirect-basis", "sh"}), 2);
   EXPECT_TRUE(said("indirect basis must be one of irradiance, luminance-cones, cones")) << text;
   EXPECT_EQ(replay({"--half-resolution", "indirect,shadow"}), 2);
-  EXPECT_TRUE(said("half resolution must be of indirect, glossy or none")) << text;
+  EXPECT_TRUE(said("half resolution must be of indirect, glossy, visibility or none")) << text;
   EXPECT_EQ(replay({"--wire", "zip"}), 2);
   EXPECT_TRUE(said("wire must be one of exact, balanced, compact, but it is \"zip\"")) << text;
   EXPECT_EQ(replay({"--layers", "depth"}), 2);
