@@ -21,7 +21,7 @@ class FrameFilter {
 };
 
 /// The one of preset `reference`, in double and pixel by pixel; core/oracle has it. `config` and
-/// `plan` must outlive it. Throws InputError for components at half resolution.
+/// `plan` must outlive it.
 std::unique_ptr<FrameFilter> make_oracle(const DenoiserConfig& config, const Plan& plan);
 
 }  // namespace holdfast
