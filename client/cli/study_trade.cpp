@@ -12,6 +12,7 @@
 #include "client/cli/thread_time.h"
 #include "client/cli/trade_points.h"
 #include "client/cli/wire_trip.h"
+#include "client/measure/deviation.h"
 #include "client/measure/layer_meter.h"
 #include "client/sequence/sequence.h"
 #include "core/denoiser/plan.h"
@@ -81,6 +82,9 @@ class Candidate {
     for (std::size_t k = 0; k < layers.size(); ++k)
       meters_[k].add(references[k], results_.at(layers[k]));
   }
+
+  /// Of the last frame, as they left the denoiser.
+  const PlaneSet& filtered() const { return filtered_; }
 
   void write(measure::TradePoint& point) const {
     const DenoiserConfig& config = denoiser_.config();
@@ -159,6 +163,53 @@ class Candidates {
   std::vector<std::size_t> of_setting_;
 };
 
+/// How far the presets of a recipe are from `reference`, which filters beside them.
+class Deviations {
+ public:
+  /// `settings`: of which the first are the presets of the first recipe.
+  Deviations(const std::vector<TradeSetting>& settings, const std::vector<PlaneId>& layers)
+      : layers_(layers), reference_(reference_of(settings.front().config)) {
+    while (presets_.size() < settings.size() &&
+           settings[presets_.size()].point.recipe == settings.front().point.recipe &&
+           !settings[presets_.size()].point.presets.empty())
+      presets_.push_back(settings[presets_.size()].point.presets.front());
+    meters_.resize(presets_.size() * layers.size());
+  }
+
+  /// After `candidates` have filtered it.
+  void add(const Frame& frame, const Candidates& candidates) {
+    reference_.filter(frame, wanted_);
+    const measure::Mask surface = measure::surface_mask(frame.planes.at({PlaneKind::kDepth, {}}));
+    auto meter = meters_.begin();
+    for (std::size_t k = 0; k < presets_.size(); ++k)
+      for (const PlaneId layer : layers_)
+        (meter++)->add(candidates.of_setting(k).filtered().at(layer), wanted_.at(layer), surface);
+  }
+
+  std::vector<measure::TradeScene::Deviation> values() const {
+    std::vector<measure::TradeScene::Deviation> out;
+    auto meter = meters_.begin();
+    for (const std::string& preset : presets_)
+      for (const PlaneId layer : layers_) {
+        out.push_back({preset, plane_name(layer), meter->typical(), meter->largest()});
+        ++meter;
+      }
+    return out;
+  }
+
+ private:
+  static DenoiserConfig reference_of(DenoiserConfig config) {
+    config.preset = "reference";
+    return config;
+  }
+
+  std::vector<PlaneId> layers_;
+  std::vector<std::string> presets_;
+  Denoiser reference_;
+  PlaneSet wanted_;
+  std::vector<measure::DeviationMeter> meters_;  ///< by preset, then layer
+};
+
 /// The filtered components of a scene, then the composite.
 std::vector<PlaneId> layers_of(const DenoiserConfig& scene) {
   std::vector<PlaneId> layers;
@@ -208,10 +259,12 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
   const std::vector<PlaneId> layers = layers_of(config);
   std::vector<measure::ReferenceTrack> tracks;
   for (const PlaneId layer : layers) tracks.emplace_back(measure::measure_of(layer.kind), false);
+  Deviations deviations(settings, layers);
   std::size_t judged = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const Frame frame = sequence.read_frame(indices[i]);
     candidates.filter(frame, i >= kWarmUp);
+    deviations.add(frame, candidates);
     if (sequence.has_reference(indices[i])) {
       candidates.judge(references_of(sequence, frame, i, layers, tracks), layers);
       ++judged;
@@ -225,7 +278,8 @@ measure::TradeScene try_settings(const std::string& name, const SequenceReader& 
                             config.width,
                             config.height,
                             {},
-                            {}};
+                            {},
+                            deviations.values()};
   for (std::size_t k = 0; k < settings.size(); ++k) {
     auto& points = k < unwired ? scene.points : scene.wire_points;
     candidates.of_setting(k).write(points.emplace_back(settings[k].point));

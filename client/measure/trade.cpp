@@ -60,6 +60,27 @@ std::vector<TradePoint> means_of(const std::vector<TradeScene>& scenes,
   return means;
 }
 
+std::vector<TradeScene::Deviation> deviations_over(const std::vector<TradeScene>& scenes) {
+  std::vector<TradeScene::Deviation> all;
+  std::vector<int> counts;
+  for (const TradeScene& scene : scenes)
+    for (const TradeScene::Deviation& own : scene.deviations) {
+      auto known = std::find_if(all.begin(), all.end(), [&](const TradeScene::Deviation& other) {
+        return other.preset == own.preset && other.layer == own.layer;
+      });
+      if (known == all.end()) {
+        known = all.insert(all.end(), {own.preset, own.layer, 0, 0});
+        counts.push_back(0);
+      }
+      known->typical += own.typical * own.typical;
+      known->largest = std::max(known->largest, own.largest);
+      ++counts[static_cast<std::size_t>(known - all.begin())];
+    }
+  for (std::size_t k = 0; k < all.size(); ++k)
+    all[k].typical = std::sqrt(all[k].typical / counts[k]);
+  return all;
+}
+
 }  // namespace
 
 std::string point_name(const TradePoint& point) {
@@ -108,6 +129,7 @@ TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes) {
   }
   all.points = means_of(scenes, &TradeScene::points);
   all.wire_points = means_of(scenes, &TradeScene::wire_points);
+  all.deviations = deviations_over(scenes);
   return all;
 }
 

@@ -42,6 +42,13 @@ struct TradeScene {
   /// The presets of the first recipe under the wire profiles that round or compress. Not among
   /// `points`: what they save is no time in the core, so that the front knows nothing of them.
   std::vector<TradePoint> wire_points = {};
+  /// How far layers are, under the presets of the first recipe, from those of `reference`, which is
+  /// the same method in double precision without any saving: deviation.h.
+  struct Deviation {
+    std::string preset, layer;
+    double typical = 0, largest = 0;
+  };
+  std::vector<Deviation> deviations = {};
 };
 
 /// "reliable fast" of a preset, else what is chosen: "reliable 3x3 irradiance half indirect".
@@ -58,7 +65,8 @@ double rmse_behind_front(const std::vector<TradePoint>& points, std::size_t poin
 
 /// All scenes as one: of each setting that every scene has, the geometric means of time, both RMSE
 /// and bytes held and the means of SSIM and other bytes; time and RMSE are over those of "reliable
-/// balanced" on each scene. No points if that one is missing.
+/// balanced" on each scene. No points if that one is missing. Deviations: of each layer over the
+/// scenes that have it, the root of the mean square of the typical and the greatest of the largest.
 TradeScene trade_over_scenes(const std::vector<TradeScene>& scenes);
 
 }  // namespace holdfast::measure

@@ -51,6 +51,10 @@ nlohmann::ordered_json scene_json(const TradeScene& scene) {
     point["rmse_behind_front"] = rmse_behind_front(scene.points, k);
   }
   for (const TradePoint& point : scene.wire_points) json["wire"].push_back(point_json(point));
+  json["from_reference"] = nlohmann::ordered_json::object();
+  for (const TradeScene::Deviation& deviation : scene.deviations)
+    json["from_reference"][deviation.preset][deviation.layer] = {{"typical", deviation.typical},
+                                                                 {"largest", deviation.largest}};
   return json;
 }
 
@@ -101,6 +105,18 @@ std::vector<std::vector<std::string>> wire_rows_of(const TradeScene& scene, bool
   return rows;
 }
 
+/// How far presets are from `reference`.
+std::vector<std::vector<std::string>> deviation_rows_of(const TradeScene& scene) {
+  std::vector<std::vector<std::string>> rows;
+  for (const TradeScene::Deviation& deviation : scene.deviations)
+    rows.push_back({deviation.preset, deviation.layer, number_text(deviation.typical, 6),
+                    number_text(deviation.largest, 4)});
+  if (!rows.empty())
+    rows.insert(rows.begin(), {"preset", "layer", "typical (RMS) difference from reference",
+                               "largest difference"});
+  return rows;
+}
+
 std::string table_markdown(const std::vector<std::vector<std::string>>& rows) {
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -132,6 +148,7 @@ std::string scene_markdown(const TradeScene& scene, bool relative) {
   std::string text = "**" + scene.name + "**: " + scene.caption + "\n\n" +
                      table_markdown(rows_of(scene, relative));
   if (!scene.wire_points.empty()) text += table_markdown(wire_rows_of(scene, relative));
+  if (!scene.deviations.empty()) text += table_markdown(deviation_rows_of(scene));
   return text;
 }
 
@@ -140,6 +157,7 @@ std::string scene_html(const TradeScene& scene, bool relative) {
                      ".</p><figure>" + trade_panels_svg(scene, relative) + "</figure>" +
                      table_html(rows_of(scene, relative));
   if (!scene.wire_points.empty()) html += table_html(wire_rows_of(scene, relative));
+  if (!scene.deviations.empty()) html += table_html(deviation_rows_of(scene));
   return html + "</section>";
 }
 

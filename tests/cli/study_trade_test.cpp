@@ -33,7 +33,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
   const auto json = nlohmann::json::parse(test::file_text(dir / "study.json"));
   EXPECT_EQ(keys(json), (Names{"all", "scenes", "seconds"}));
   const auto& scene = json["scenes"]["fence"];
-  EXPECT_EQ(keys(scene), (Names{"caption", "height", "points", "width", "wire"}));
+  EXPECT_EQ(keys(scene), (Names{"caption", "from_reference", "height", "points", "width", "wire"}));
   std::set<std::string> names;
   for (const auto& point : scene["points"]) {
     EXPECT_EQ(keys(point),
@@ -57,6 +57,12 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
   EXPECT_NE(compact["rmse"], balanced["rmse"]) << "planes are rounded";
   EXPECT_NEAR(compact["rmse"].get<double>(), balanced["rmse"].get<double>(),
               0.02 * balanced["rmse"].get<double>());
+  EXPECT_EQ(keys(scene["from_reference"]), (Names{"accurate", "balanced", "fast"}));
+  const auto& fast = scene["from_reference"]["fast"]["light0.visibility"];
+  const auto& same = scene["from_reference"]["balanced"]["light0.visibility"];
+  EXPECT_LT(same["typical"], 1e-4) << "rounding alone";
+  EXPECT_GT(fast["typical"], 1e-3) << "half resolution";
+  EXPECT_GT(fast["largest"], fast["typical"]);
   EXPECT_EQ(scene["wire"].size(), 3u * 2u) << "presets under two profiles";
   EXPECT_NE(test::file_text(dir / "table.md").find("| reliable fast, wire balanced |"),
             std::string::npos);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/measure/deviation.h"
 #include "client/measure/trade_plot.h"
 #include "client/measure/trade_text.h"
 
@@ -94,6 +95,36 @@ TEST(Trade, OverScenesTakesGeometricMeansOfRatiosToBalanced) {
   EXPECT_NEAR(all.points[1].composite_rmse, std::sqrt(4 * 3), 1e-12);
   EXPECT_EQ(trade_over_scenes({one, two}).points.size(), 1u) << "one scene lacks the other setting";
   EXPECT_TRUE(trade_over_scenes({TradeScene{"x", "", 8, 8, {half}, {}}}).points.empty());
+}
+
+TEST(Trade, DeviationsOverScenesAreOfTheLayersThatEachHas) {
+  TradeScene one{"one", "", 8, 8, {point("reliable", 10, 0.1, {"balanced"})}, {}};
+  TradeScene two = one;
+  one.deviations = {{"fast", "glossy", 0.03, 0.2}};
+  two.deviations = {{"fast", "glossy", 0.04, 0.1}, {"fast", "indirect", 0.5, 0.6}};
+  const TradeScene all = trade_over_scenes({one, two});
+  ASSERT_EQ(all.deviations.size(), 2u);
+  EXPECT_NEAR(all.deviations[0].typical, std::sqrt((0.0009 + 0.0016) / 2), 1e-12);
+  EXPECT_EQ(all.deviations[0].largest, 0.2);
+  EXPECT_NEAR(all.deviations[1].typical, 0.5, 1e-12) << "the other scene has no such layer";
+  EXPECT_NE(trade_markdown({one}).find("| fast | glossy | 0.030000 | 0.2000 |"), std::string::npos);
+}
+
+TEST(Deviation, IsTheDifferenceOfJudgedValuesOnSurfaces) {
+  Plane a({PlaneKind::kGlossy, {}}, 2, 1), b({PlaneKind::kGlossy, {}}, 2, 1);
+  for (int c = 0; c < 3; ++c) {
+    a.channel(c).at(0, 0) = 1.0f;  // judged 0.5
+    b.channel(c).at(0, 0) = 3.0f;  // 0.75
+    a.channel(c).at(1, 0) = 1e6f;  // in the sky
+  }
+  DeviationMeter meter;
+  meter.add(a, b, {1, 0});
+  EXPECT_NEAR(meter.typical(), 0.25, 1e-6);
+  EXPECT_NEAR(meter.largest(), 0.25, 1e-6);
+  meter.add(a, a, {1, 0});
+  EXPECT_NEAR(meter.typical(), 0.25 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(meter.largest(), 0.25, 1e-6);
+  EXPECT_TRUE(std::isnan(DeviationMeter().typical()));
 }
 
 TEST(Trade, WireProfilesAreNotOnTheFront) {
