@@ -82,9 +82,14 @@ TEST_F(Bench, KeepsTheSignalsThatItIsAskedFor) {
 TEST_F(Bench, TimesOneSignalUnderSvgf) {
   const auto json =
       bench({"--scene", "occluder", "--size", "96x54", "--threads", "1", "--one-signal"});
-  EXPECT_GT(json["one_signal"]["us_per_pixel"].get<double>(), 0);
-  EXPECT_GT(json["one_signal"]["reference_us_per_pixel"].get<double>(),
-            json["one_signal"]["us_per_pixel"].get<double>());
+  const double kernels = json["one_signal"]["us_per_pixel"];
+  EXPECT_GT(kernels, 0);
+#if defined(HOLDFAST_ONE_VARIANT)
+  const double least = 0;  // the scalar body is the same
+#else
+  const double least = kernels;
+#endif
+  EXPECT_GT(json["one_signal"]["reference_us_per_pixel"].get<double>(), least);
   EXPECT_NE(text.find("one signal, svgf, 4 levels"), std::string::npos) << text;
   EXPECT_EQ(holdfast({"bench", "--scene", "fence", "--size", "32x16", "--one-signal"}), 2);
   EXPECT_NE(text.find("needs a scene with indirect light or reflections"), std::string::npos);
