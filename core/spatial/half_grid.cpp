@@ -12,32 +12,40 @@ namespace {
 constexpr float kMostDepthChange = 0.25f;  // of the depth, where a surface is seen edge-on; ours
 
 /// One channel of a row of half pixels: of four values each, those of the representatives.
+template <class T>
 struct ChoiceRow {
-  const std::uint32_t* chosen;         ///< 0..3
-  const std::uint32_t *upper, *lower;  ///< rows of the full image; twice the upper one at its end
-  int width;                           ///< of the full image
-  std::uint32_t* out;
+  const std::uint32_t* chosen;  ///< 0..3
+  const T *upper, *lower;       ///< rows of the full image; twice the upper one at its end
+  int width;                    ///< of the full image
+  T* out;
 };
 
-HOLDFAST_INLINE void choose_row_body(const ChoiceRow& a) {
-  const std::uint32_t* __restrict chosen = a.chosen, * __restrict upper = a.upper, * __restrict lower = a.lower;
-  std::uint32_t* __restrict out = a.out;
+template <class T>
+HOLDFAST_INLINE void choose_of_row(const ChoiceRow<T>& a) {
+  const std::uint32_t* __restrict chosen = a.chosen;
+  const T* __restrict upper = a.upper;
+  const T* __restrict lower = a.lower;
+  T* __restrict out = a.out;
   const int whole = a.width / 2;
 #pragma GCC ivdep
   for (int x = 0; x < whole; ++x) {
-    const std::uint32_t k = chosen[x], left_above = upper[2 * x], right_above = upper[2 * x + 1],
-                        left_below = lower[2 * x], right_below = lower[2 * x + 1];
-    const std::uint32_t above = (k & 1u) != 0 ? right_above : left_above;
-    const std::uint32_t below = (k & 1u) != 0 ? right_below : left_below;
+    const std::uint32_t k = chosen[x];
+    const T left_above = upper[2 * x], right_above = upper[2 * x + 1];
+    const T left_below = lower[2 * x], right_below = lower[2 * x + 1];
+    const T above = (k & 1u) != 0 ? right_above : left_above;
+    const T below = (k & 1u) != 0 ? right_below : left_below;
     out[x] = k >= 2 ? below : above;
   }
   if (a.width % 2 == 1) out[whole] = (chosen[whole] >= 2 ? lower : upper)[2 * whole];
 }
 
-HOLDFAST_KERNEL(choose_row, ChoiceRow)
+HOLDFAST_INLINE void choose_floats_body(const ChoiceRow<float>& a) { choose_of_row(a); }
+HOLDFAST_INLINE void choose_words_body(const ChoiceRow<std::uint32_t>& a) { choose_of_row(a); }
+HOLDFAST_KERNEL(choose_floats, ChoiceRow<float>)
+HOLDFAST_KERNEL(choose_words, ChoiceRow<std::uint32_t>)
 
-/// One row of half pixels (x, y) whose representatives have `normal`, and `depth` each, which is
-/// moved to where the ray of the half pixel meets their tangent plane.
+/// Row y of half pixels. The depth of each is that of its representative, and is moved to where the
+/// half pixel's own ray meets the representative's tangent plane.
 struct MiddleRow {
   PixelRays<float> full, half;
   int y, width;
@@ -84,17 +92,15 @@ HOLDFAST_INLINE void move_to_middle_body(const MiddleRow& a) {
 HOLDFAST_KERNEL(move_to_middle, MiddleRow)
 
 /// Row y of the representatives of one channel.
-void choose_row_of(const HalfGrid& grid, const ChannelView<const std::uint32_t>& full, int y,
-                   std::uint32_t* out) {
+void choose_row(const HalfGrid& grid, const ChannelView<const float>& full, int y, float* out) {
   const int below = std::min(2 * y + 1, full.height - 1);
-  choose_row({grid.representative[0].row(y), full.row(2 * y), full.row(below), full.width, out});
+  choose_floats({grid.representative[0].row(y), full.row(2 * y), full.row(below), full.width, out});
 }
 
-void choose_row_of(const HalfGrid& grid, const ChannelView<const float>& full, int y, float* out) {
-  const auto words = [](const float* row) { return reinterpret_cast<const std::uint32_t*>(row); };
+void choose_row(const HalfGrid& grid, const ChannelView<const std::uint32_t>& full, int y,
+                std::uint32_t* out) {
   const int below = std::min(2 * y + 1, full.height - 1);
-  choose_row({grid.representative[0].row(y), words(full.row(2 * y)), words(full.row(below)),
-              full.width, reinterpret_cast<std::uint32_t*>(out)});
+  choose_words({grid.representative[0].row(y), full.row(2 * y), full.row(below), full.width, out});
 }
 
 }  // namespace
@@ -103,7 +109,7 @@ void halve_guides(const Guides& full, const HalfGrid& grid, Guides& half) {
   for_each_row(grid.representative.height(), [&](int y) {
     const int width = grid.representative.width();
     for (int c = 0; c < 4; ++c)
-      choose_row_of(grid, full.depth_normal[c], y, half.depth_normal[c].row(y));
+      choose_row(grid, full.depth_normal[c], y, half.depth_normal[c].row(y));
     move_to_middle({full.rays,
                     half.rays,
                     y,
@@ -111,12 +117,12 @@ void halve_guides(const Guides& full, const HalfGrid& grid, Guides& half) {
                     grid.representative[0].row(y),
                     {half.normal(0).row(y), half.normal(1).row(y), half.normal(2).row(y)},
                     half.depth_normal[0].row(y)});
-    choose_row_of(grid, full.id[0], y, half.id[0].row(y));
-    if (half.roughness) choose_row_of(grid, full.roughness[0], y, half.roughness[0].row(y));
+    choose_row(grid, full.id[0], y, half.id[0].row(y));
+    if (half.roughness) choose_row(grid, full.roughness[0], y, half.roughness[0].row(y));
     if (!half.motion) return;
     for (int c = 0; c < 2; ++c) {
       float* motion = half.motion[c].row(y);
-      choose_row_of(grid, full.motion[c], y, motion);
+      choose_row(grid, full.motion[c], y, motion);
       for (int x = 0; x < width; ++x) motion[x] *= 0.5f;
     }
   });
@@ -160,7 +166,7 @@ void mean_of_quads(const Channels<float>* const (&pixels)[HalfGrid::kQuad], int 
 void halve_plane(const Plane& full, const HalfGrid& grid, Plane& half) {
   for_each_row(grid.representative.height(), [&](int y) {
     for (int c = 0; c < full.channels(); ++c)
-      choose_row_of(grid, full.words(c), y, half.words(c).row(y));
+      choose_row(grid, full.words(c), y, half.words(c).row(y));
   });
 }
 
