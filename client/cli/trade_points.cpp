@@ -20,7 +20,7 @@ TradeSetting setting_of(const DenoiserConfig& scene, const std::string& recipe,
                         const Preset& parts) {
   TradeSetting setting;
   setting.point.recipe = recipe;
-  setting.point.kernel_radius = parts.kernel_radius;
+  setting.point.kernel_taps = parts.kernel_taps;
   setting.point.more_levels = parts.more_levels;
   setting.point.basis = basis_name(parts.indirect_basis);
   setting.point.half = half_names(parts);
@@ -36,7 +36,7 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
   TradeSetting setting = setting_of(scene, recipe, parts);
   DenoiserConfig& config = setting.config;
   config.preset = "balanced";
-  config.kernel_radius = parts.kernel_radius;
+  config.kernel_taps = parts.kernel_taps;
   config.more_levels = parts.more_levels - find_preset(scene).more_levels;
   config.indirect_basis = basis_name(parts.indirect_basis);
   config.half_resolution = half_names(parts);
@@ -46,7 +46,7 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
 }
 
 bool same_parts(const measure::TradePoint& a, const measure::TradePoint& b) {
-  return a.recipe == b.recipe && a.kernel_radius == b.kernel_radius &&
+  return a.recipe == b.recipe && a.kernel_taps == b.kernel_taps &&
          a.more_levels == b.more_levels && a.basis == b.basis && a.half == b.half &&
          a.history == b.history;
 }
@@ -60,9 +60,9 @@ void add_once(std::vector<TradeSetting>& settings, TradeSetting setting) {
 
 void add_sweep(const DenoiserConfig& scene, const std::string& recipe,
                std::vector<TradeSetting>& settings) {
-  for (const int radius : {1, 2})
+  for (const int taps : {9, 13, 25})
     for (const RadianceBasis basis : kBases) {
-      Preset parts{.name = {}, .kernel_radius = radius, .indirect_basis = basis};
+      Preset parts{.name = {}, .kernel_taps = taps, .indirect_basis = basis};
       for (const auto& [indirect, glossy, visibility] : kHalves) {
         parts.half_indirect = indirect;
         parts.half_glossy = glossy;

@@ -19,7 +19,7 @@ const TradePoint* balanced(const TradeScene& scene) {
 const TradePoint* same_setting(const std::vector<TradePoint>& points, const TradePoint& point) {
   for (const TradePoint& other : points)
     if (other.wire == point.wire && other.recipe == point.recipe &&
-        other.kernel_radius == point.kernel_radius && other.more_levels == point.more_levels &&
+        other.kernel_taps == point.kernel_taps && other.more_levels == point.more_levels &&
         other.basis == point.basis && other.half == point.half && other.history == point.history)
       return &other;
   return nullptr;
@@ -88,7 +88,7 @@ std::string point_name(const TradePoint& point) {
   for (const std::string& preset : point.presets)
     name += (&preset == &point.presets.front() ? " " : ", ") + preset;
   if (!point.presets.empty()) return point.wire == "exact" ? name : name + ", wire " + point.wire;
-  name += point.kernel_radius == 1 ? " 3x3" : " 5x5";
+  name += " " + std::to_string(point.kernel_taps) + " taps";
   if (point.more_levels != 0)
     name += (point.more_levels > 0 ? " +" : " ") + std::to_string(point.more_levels) + " levels";
   if (!point.basis.empty()) name += " " + point.basis;

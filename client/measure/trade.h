@@ -10,7 +10,7 @@ namespace holdfast::measure {
 struct TradePoint {
   std::string recipe;
   std::vector<std::string> presets;  ///< that give this setting; empty = none
-  int kernel_radius = 2;             ///< 1 or 2
+  int kernel_taps = 13;              ///< 9, 13 or 25
   int more_levels = 0;               ///< beside those of the recipe
   std::string basis;                 ///< of indirect light, as DenoiserConfig names it; the
                                      ///< preset's is that of recipes that keep cones
@@ -51,7 +51,7 @@ struct TradeScene {
   std::vector<Deviation> deviations = {};
 };
 
-/// "reliable fast" of a preset, else what is chosen: "reliable 3x3 irradiance half indirect".
+/// "reliable fast" of a preset, else what is chosen: "reliable 9 taps irradiance half indirect".
 std::string point_name(const TradePoint& point);
 
 /// Indices of the points of a recipe that no other of them beats in both time and RMSE, fastest

@@ -23,7 +23,7 @@ nlohmann::ordered_json point_json(const TradePoint& point) {
   return {{"name", point_name(point)},
           {"recipe", point.recipe},
           {"presets", point.presets},
-          {"kernel_radius", point.kernel_radius},
+          {"kernel_taps", point.kernel_taps},
           {"more_levels", point.more_levels},
           {"indirect_basis", point.basis},
           {"half_resolution", point.half},

@@ -30,8 +30,7 @@ struct DenoiserConfig {
   /// common to 64 pixels) or "f32"; empty = the preset's choice. `reference` keeps doubles in any
   /// case, and recipes that keep moments of the luminance (svgf, asvgf) keep floats.
   std::string history;
-  int kernel_radius =
-      0;                ///< likewise, of the a-trous kernel: 1 (3x3 taps), 2 (5x5); 0 = its choice
+  int kernel_taps = 0;  ///< likewise, of the a-trous kernel: 9, 13 or 25; 0 = its choice
   int more_levels = 0;  ///< a-trous levels of radiance added to the recipe's, -3..1
   int rest_turns = 0;   ///< likewise, in how many frames a component at rest is filtered once: 1
                         ///< (in all) .. 16; 0 = the preset's choice

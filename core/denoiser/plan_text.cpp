@@ -37,7 +37,7 @@ std::string filter_text(const Recipe& recipe, bool visibility) {
   const int levels = recipe.svgf_filter ? recipe.svgf_levels : filter.levels;
   return std::string(recipe.svgf_filter ? "variance-guided" : "sample-weighted") + " a-trous, " +
          std::to_string(levels) + " levels of " +
-         (recipe.svgf_filter || filter.radius == 2 ? "5x5" : "3x3") + " taps";
+         std::to_string(recipe.svgf_filter ? 25 : filter.taps) + " taps";
 }
 
 /// The passes of one component, with the bytes that each moves for a pixel of the frame.

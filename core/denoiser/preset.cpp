@@ -17,14 +17,15 @@ constexpr RadianceBasis kBases[] = {RadianceBasis::kIrradiance, RadianceBasis::k
 
 std::vector<Preset> make_presets() {
   const Preset fast{.name = "fast",
-                    .kernel_radius = 1,
+                    .kernel_taps = 9,
                     .indirect_basis = RadianceBasis::kIrradiance,
                     .half_indirect = true,
                     .half_glossy = true,
                     .half_visibility = true,
                     .rest_turns = kRestTurns};
   const Preset balanced{.name = "balanced", .rest_turns = kRestTurns};
-  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
+  const Preset accurate{
+      .name = "accurate", .kernel_taps = 25, .indirect_basis = RadianceBasis::kConesColour};
   const Preset reference{.name = "reference", .oracle = true};
   return {fast, balanced, accurate, reference};
 }
@@ -96,10 +97,11 @@ void choose_history(const DenoiserConfig& config, Preset& preset) {
 }
 
 void choose_filter(const DenoiserConfig& config, Preset& preset) {
-  if (config.kernel_radius < 0 || config.kernel_radius > 2)
-    throw InputError("kernel radius", "must be 1 or 2, or 0 for the preset's",
-                     std::to_string(config.kernel_radius));
-  if (config.kernel_radius > 0) preset.kernel_radius = config.kernel_radius;
+  const int taps = config.kernel_taps;
+  if (taps != 0 && taps != 9 && taps != 13 && taps != 25)
+    throw InputError("kernel taps", "must be 9, 13 or 25, or 0 for the preset's",
+                     std::to_string(taps));
+  if (taps != 0) preset.kernel_taps = taps;
   if (config.more_levels < kFewestMoreLevels || config.more_levels > kMostMoreLevels)
     throw InputError("more levels", "must be in -3..1", std::to_string(config.more_levels));
   preset.more_levels += config.more_levels;
@@ -130,7 +132,7 @@ Preset find_preset(const DenoiserConfig& config) {
 }
 
 void apply(const Preset& preset, bool force_basis, Recipe& recipe) {
-  recipe.visibility_filter.radius = recipe.radiance_filter.radius = preset.kernel_radius;
+  recipe.visibility_filter.taps = recipe.radiance_filter.taps = preset.kernel_taps;
   for (int* levels : {&recipe.radiance_filter.levels, &recipe.svgf_levels})
     *levels = std::max(*levels + preset.more_levels, 1);
   if (force_basis || recipe.indirect_basis != RadianceBasis::kIrradiance)

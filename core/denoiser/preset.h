@@ -13,7 +13,7 @@ namespace holdfast {
 /// and `balanced` takes every recipe as it is.
 struct Preset {
   std::string name;
-  int kernel_radius = 2;  ///< of the a-trous kernel: 1 (3x3 taps) or 2 (5x5)
+  int kernel_taps = 13;  ///< of the a-trous kernel: 9, 13 or 25 (spatial/adaptive_filter.h)
   RadianceBasis indirect_basis = RadianceBasis::kConesLuminance;  ///< of recipes that keep cones
   bool half_indirect = false;                     ///< indirect light is filtered at half resolution
   bool half_glossy = false;                       ///< reflections likewise

@@ -33,6 +33,7 @@ void filter_pixel(const Surfaces& s, const Image& values, const Image& spread, c
   double weights = 0, spreads = 0, sums[kMostFilterChannels] = {};
   for (int ky = -pass.radius; ky <= pass.radius; ++ky)
     for (int kx = -pass.radius; kx <= pass.radius; ++kx) {
+      if (pass.diamond && std::abs(kx) + std::abs(ky) > pass.radius) continue;
       const int qx = x + kx * pass.step, qy = y + ky * pass.step;
       if (!s.inside(qx, qy) || !s.any(qx, qy)) continue;
       const double h = pass.kernel[std::abs(kx)] * pass.kernel[std::abs(ky)];
@@ -61,6 +62,13 @@ Filtered filter_pass(const Surfaces& surfaces, const Image& values, const Image&
 Pass box_pass(int step) { return {.radius = 1, .kernel = {1, 1, 0}, .step = step}; }
 
 Pass tent_pass(int step) { return {.radius = 1, .kernel = {0.5, 0.25, 0}, .step = step}; }
+
+Pass kernel_pass(int taps, int step) {
+  if (taps == 9) return {.radius = 1, .kernel = {1, 0.8, 0}, .step = step};
+  if (taps == 13)
+    return {.radius = 2, .diamond = true, .kernel = {1, 0.75, 0.35}, .step = step};
+  return {.step = step};
+}
 
 Filtered window_means(const Surfaces& surfaces, const Image& values, int second_step,
                       const Image* footprint) {

@@ -16,6 +16,7 @@ enum class Weighting {
 /// Taps outside the image or without surface are left out; pixels without surface copy.
 struct Pass {
   int radius = 2;
+  bool diamond = false;  ///< only taps with |dx| + |dy| <= radius * step
   double kernel[3] = {3.0 / 8, 1.0 / 4, 1.0 / 16};  ///< by |offset|
   int step = 1;
   Weighting weighting = Weighting::kEqual;
@@ -34,6 +35,9 @@ Filtered filter_pass(const Surfaces& surfaces, const Image& values, const Image&
 /// 3x3 taps: equal, or 1/4 1/2 1/4 a dimension.
 Pass box_pass(int step);
 Pass tent_pass(int step);
+
+/// The kernels of spatial/adaptive_filter.h, by their number of taps.
+Pass kernel_pass(int taps, int step);
 
 /// spatial/window.h: means over a window of 3 + 2 second_step pixels that stays on the surface, and
 /// 1/n, n the equal samples in each.

@@ -83,7 +83,7 @@ Image filter_by_samples(const Surfaces& now, const History& history, const Stati
   if (footprint != nullptr) narrow = narrowed(now, *footprint, history.samples);
   Filtered level{history.signal, history.samples};
   for (int k = 0; k < settings.levels; ++k) {
-    Pass pass = settings.radius == 1 ? tent_pass(1 << k) : Pass{.step = 1 << k};
+    Pass pass = kernel_pass(settings.taps, 1 << k);
     pass.weighting = Weighting::kSamples;
     pass.luminance = &guide.values;
     pass.inverse_sigma = &tolerance;

@@ -109,14 +109,22 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 
 }  // namespace
 
+FilterWeights kernel_of(int taps) {
+  switch (taps) {
+    case 9: return {.radius = 1, .kernel = {1.0f, 0.8f, 0.0f}};
+    case 13: return {.radius = 2, .diamond = true, .kernel = {1.0f, 0.75f, 0.35f}};
+    default: assert(taps == 25); return {};
+  }
+}
+
 void adaptive_filter(const Guides& guides, const Signal& signal,
                      const AdaptiveFilterSettings& settings, TapWeights& weights, FilterScratch& s,
                      Plane& out) {
   assert(settings.levels >= 1 && settings.levels <= kMostLevels);
   ChannelView<const float> values[3];
   for (int c = 0; c < signal.channels; ++c) values[c] = (*signal.values)[c];
-  assert(settings.radius == 1 || settings.radius == 2);
-  const Zones zones(settings.levels, settings.radius);
+  const FilterWeights kernel = kernel_of(settings.taps);
+  const Zones zones(settings.levels, kernel.radius);
   s.activity.measure(guides, {values, static_cast<std::size_t>(signal.channels)}, zones.halos(),
                      kRestTolerance);
   prepare_luminance(guides, signal, settings.luminance_sigma, zones, weights, s);
@@ -124,7 +132,7 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
 
   FilterRow pass;
   pass.guides = &guides;
-  if (settings.radius == 1) pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
+  pass.weights = kernel;
   pass.channels = signal.channels;
   pass.activity = &s.activity;
   pass.spread = Spread::kSamples;

@@ -11,12 +11,14 @@ inline constexpr int kMostLevels = 8;  ///< of `adaptive_filter`: a reach of 510
 /// Constants of `adaptive_filter` that differ between components.
 struct AdaptiveFilterSettings {
   int levels = 3;                 ///< a-trous levels, 1..kMostLevels
-  int radius = 2;                 ///< of their kernel: 1 (3x3 taps) or 2 (5x5)
+  int taps = 13;                  ///< of their kernel, as `kernel_of` has them
   float luminance_sigma = 16.0f;  ///< in standard deviations of the edge-stopping luminance
 };
 
-/// The filter of every recipe but `svgf`: an a-trous filter (3x3: 1/4 1/2 1/4; 5x5: 1/16 1/4 3/8
-/// 1/4 1/16 a dimension) whose taps count by the samples behind them (a pixel without history
+/// The kernel of 9 taps (3x3), 13 (of 5x5 those with |dx| + |dy| <= 2 steps) or 25 (5x5).
+FilterWeights kernel_of(int taps);
+
+/// The filter of every recipe but `svgf`: an a-trous filter whose taps count by the samples behind them (a pixel without history
 /// borrows from neighbours with long history, not the reverse), stopped at geometry, at edges of a
 /// prefiltered luminance, and, for a visibility, outside the penumbra's footprint (axis-aligned
 /// filtering of soft shadows, Mehta et al. 2012). The footprint narrows with samples^-1/8 per axis,

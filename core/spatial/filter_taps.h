@@ -200,6 +200,11 @@ HOLDFAST_INLINE float exponent_of(const TapRow& t, int q, const TapPlace& at,
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint, int kRadius>
 HOLDFAST_INLINE void add_row_taps(const TapRow& t, int i, int step, const float (&bits)[3],
                                   const FilterPixel& p, FilterSums<C>& s) {
+  if constexpr (kRadius == 0) {
+    const TapPlace at = own_place<kFootprint>(p);
+    const float weight = weight_exp(bits[0], exponent_of<kLuminance, kFootprint>(t, i, at, p));
+    return add_weighted<C, kSpread>(t, i, weight, s);
+  }
   const float dx = static_cast<float>(step);
   const int before = i - step, after = i + step, first = before - step, last = after + step;
   float far_before = 0.0f, far_after = 0.0f;

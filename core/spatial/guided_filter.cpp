@@ -40,6 +40,11 @@ HOLDFAST_INLINE RowBits row_bits(const RowPass& pass, int ky) {
            weight_bits(hy + pass.log2_kernel[2])}};
 }
 
+/// Taps to either side in the row at distance ky.
+HOLDFAST_INLINE int half_width(const FilterWeights& weights, int ky) {
+  return weights.diamond ? weights.radius - abs_of(ky) : weights.radius;
+}
+
 /// All taps of one row.
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint, int kRadius>
 HOLDFAST_INLINE void add_taps(const RowPass& pass, const TapRow& t, int count, int ky,
@@ -86,10 +91,11 @@ HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock&
     if (qy < 0 || qy >= a.guides->view.height) continue;
     const TapRow t = inside ? tap_row<C, kReads>(a, x0, qy)
                             : padded_tap_row<C, kReads>(a, x0, count, qy, padded);
-    if (a.weights.radius == 2)
-      add_taps<C, kLuminance, kSpread, kFootprint, 2>(pass, t, count, ky, b);
-    else
-      add_taps<C, kLuminance, kSpread, kFootprint, 1>(pass, t, count, ky, b);
+    switch (half_width(a.weights, ky)) {
+      case 0: add_taps<C, kLuminance, kSpread, kFootprint, 0>(pass, t, count, ky, b); break;
+      case 1: add_taps<C, kLuminance, kSpread, kFootprint, 1>(pass, t, count, ky, b); break;
+      default: add_taps<C, kLuminance, kSpread, kFootprint, 2>(pass, t, count, ky, b);
+    }
   }
 }
 

@@ -24,7 +24,8 @@ inline constexpr int kGreatestStep = 128;
 /// is the width of a pixel at p's depth. exp(-k (1 - x)) stands for SVGF's x^k (they agree to first
 /// order at x = 1), so that all terms share one exponential.
 struct FilterWeights {
-  int radius = 2;                                              ///< 1: 3x3 taps, 2: 5x5
+  int radius = 2;        ///< 1: 3x3 taps, 2: 5x5
+  bool diamond = false;  ///< of these only the ones with |dx| + |dy| <= radius * step
   float kernel[3] = {3.0f / 8.0f, 1.0f / 4.0f, 1.0f / 16.0f};  ///< 1-D weights by |offset|
   float plane_sigma_px = 1.0f;
   float normal_power = 128.0f;  ///< >= 88, so that taps without surface vanish; SVGF sec. 4.3

@@ -38,7 +38,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
   for (const auto& point : scene["points"]) {
     EXPECT_EQ(keys(point),
               (Names{"bytes_per_pixel", "composite_rmse", "front", "half_resolution", "history",
-                     "history_bytes_per_pixel", "indirect_basis", "kernel_radius", "more_levels",
+                     "history_bytes_per_pixel", "indirect_basis", "kernel_taps", "more_levels",
                      "ms", "name", "presets", "recipe", "rmse", "rmse_behind_front", "ssim",
                      "stages", "wire", "wire_bytes_per_pixel"}));
     EXPECT_EQ(point["wire"], "exact");
@@ -49,7 +49,7 @@ TEST_F(TradeStudy, WritesTheDocumentedKeysTablesPageAndPlot) {
     EXPECT_TRUE(names.insert(point["name"]).second) << point["name"] << " twice";
   }
   for (const char* name : {"reliable fast", "reliable balanced", "reliable accurate", "clamp fast",
-                           "reliable 3x3 cones half indirect, glossy, visibility f32"})
+                           "reliable 9 taps cones half indirect, glossy, visibility f32"})
     EXPECT_TRUE(names.contains(name)) << name;
   const auto& balanced = point_of(scene["points"], "reliable balanced");
   const auto& compact = point_of(scene["wire"], "reliable balanced, wire compact");

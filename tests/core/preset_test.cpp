@@ -70,10 +70,10 @@ TEST(Preset, WhatAConfigurationChoosesReplacesThePresetsChoice) {
   config.indirect_basis = "irradiance";
   EXPECT_EQ(Plan::make(config).recipe.indirect_basis, RadianceBasis::kIrradiance);
   const int levels = Plan::make(config).recipe.radiance_filter.levels;
-  config.kernel_radius = 1;
+  config.kernel_taps = 9;
   config.more_levels = -1;
-  EXPECT_EQ(Plan::make(config).recipe.radiance_filter.radius, 1);
-  EXPECT_EQ(Plan::make(config).recipe.visibility_filter.radius, 1);
+  EXPECT_EQ(Plan::make(config).recipe.radiance_filter.taps, 9);
+  EXPECT_EQ(Plan::make(config).recipe.visibility_filter.taps, 9);
   EXPECT_EQ(Plan::make(config).recipe.radiance_filter.levels, levels - 1);
   config.more_levels = -3;
   EXPECT_EQ(Plan::make(config).recipe.radiance_filter.levels, 1);
@@ -92,7 +92,7 @@ TEST(Preset, WrongChoicesAreRefusedByName) {
           "irradiance, luminance-cones, cones", "'sh'");
   refuses([](DenoiserConfig& c) { c.half_resolution = {"shadow"}; }, "half resolution",
           "indirect, glossy, visibility or none", "'shadow'");
-  refuses([](DenoiserConfig& c) { c.kernel_radius = 3; }, "kernel radius", "1 or 2", "3");
+  refuses([](DenoiserConfig& c) { c.kernel_taps = 3; }, "kernel taps", "9, 13 or 25", "3");
   refuses([](DenoiserConfig& c) { c.more_levels = 2; }, "more levels", "-3..1", "2");
   refuses(
       [](DenoiserConfig& c) {
@@ -162,7 +162,7 @@ TEST(Preset, HalfResolutionHoldsLessAndSaysSo) {
 TEST(Preset, ThePlanSaysWhatPassesMoveAndBuffersHold) {
   const std::string text = Denoiser(config_of("fast")).plan_text();
   EXPECT_EQ(text.rfind("recipe reliable\npreset fast\n", 0), 0u) << text;
-  EXPECT_NE(text.find("levels of 3x3 taps, "), std::string::npos) << text;
+  EXPECT_NE(text.find("levels of 9 taps, "), std::string::npos) << text;
   EXPECT_NE(text.find("all that is borrowed for a frame: "), std::string::npos) << text;
   EXPECT_NE(text.find("kept of light0.visibility as f32: "), std::string::npos) << text;
   // A quarter of the pixels, thus of the bytes.

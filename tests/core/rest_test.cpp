@@ -293,7 +293,7 @@ TEST(Rest, LeavesTheErrorOfAlwaysFiltering) {
     RestWorld world(5), always(1);
     for (RestWorld* of : {&world, &always}) {
       of->seed = 1000 * seed;
-      of->config.kernel_radius = 1;
+      of->config.kernel_taps = 9;
       of->config.more_levels = -3;
     }
     Denoiser resting(world.config), running(always.config);

@@ -148,15 +148,15 @@ TEST(Trade, NamesAreThoseOfPresetsElseOfWhatIsChosen) {
   TradePoint p = point("reliable", 1, 1, {"fast"});
   EXPECT_EQ(point_name(p), "reliable fast");
   p.presets.clear();
-  p.kernel_radius = 1;
+  p.kernel_taps = 9;
   p.more_levels = -1;
   p.half = {"indirect"};
-  EXPECT_EQ(point_name(p), "reliable 3x3 -1 levels cones half indirect");
+  EXPECT_EQ(point_name(p), "reliable 9 taps -1 levels cones half indirect");
   p.half = {"indirect", "glossy"};
   p.more_levels = 1;
-  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half indirect, glossy");
+  EXPECT_EQ(point_name(p), "reliable 9 taps +1 levels cones half indirect, glossy");
   p.history = "f32";
-  EXPECT_EQ(point_name(p), "reliable 3x3 +1 levels cones half indirect, glossy f32");
+  EXPECT_EQ(point_name(p), "reliable 9 taps +1 levels cones half indirect, glossy f32");
 }
 
 TEST(TradePlot, HasAPointForEachSettingAndANameForEachPreset) {

@@ -121,7 +121,7 @@ void choose_preset(DenoiserConfig& config, Random& random) {
     config.half_resolution = {choose({"indirect", "glossy", "visibility", "none", "all"})};
   if (chance(random, 0.1))
     config.half_resolution = {"indirect", choose({"glossy", "visibility", "indirect"})};
-  if (chance(random, 0.3)) config.kernel_radius = whole(random, 0, 2);
+  if (chance(random, 0.3)) config.kernel_taps = choose({9, 13, 25});
   if (chance(random, 0.2)) config.more_levels = whole(random, -3, 1);
 }
 
