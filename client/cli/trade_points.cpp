@@ -46,9 +46,8 @@ TradeSetting free_setting(const DenoiserConfig& scene, const std::string& recipe
 }
 
 bool same_parts(const measure::TradePoint& a, const measure::TradePoint& b) {
-  return a.recipe == b.recipe && a.kernel_taps == b.kernel_taps &&
-         a.more_levels == b.more_levels && a.basis == b.basis && a.half == b.half &&
-         a.history == b.history;
+  return a.recipe == b.recipe && a.kernel_taps == b.kernel_taps && a.more_levels == b.more_levels &&
+         a.basis == b.basis && a.half == b.half && a.history == b.history;
 }
 
 void add_once(std::vector<TradeSetting>& settings, TradeSetting setting) {

@@ -24,8 +24,7 @@ std::vector<Preset> make_presets() {
                     .half_visibility = true,
                     .rest_turns = kRestTurns};
   const Preset balanced{.name = "balanced", .rest_turns = kRestTurns};
-  const Preset accurate{
-      .name = "accurate", .kernel_taps = 25, .indirect_basis = RadianceBasis::kConesColour};
+  const Preset accurate{.name = "accurate", .indirect_basis = RadianceBasis::kConesColour};
   const Preset reference{.name = "reference", .oracle = true};
   return {fast, balanced, accurate, reference};
 }

@@ -64,9 +64,8 @@ Pass box_pass(int step) { return {.radius = 1, .kernel = {1, 1, 0}, .step = step
 Pass tent_pass(int step) { return {.radius = 1, .kernel = {0.5, 0.25, 0}, .step = step}; }
 
 Pass kernel_pass(int taps, int step) {
-  if (taps == 9) return {.radius = 1, .kernel = {1, 0.8, 0}, .step = step};
-  if (taps == 13)
-    return {.radius = 2, .diamond = true, .kernel = {1, 0.75, 0.35}, .step = step};
+  if (taps == 9) return tent_pass(step);
+  if (taps == 13) return {.radius = 2, .diamond = true, .kernel = {1, 0.8, 0.4}, .step = step};
   return {.step = step};
 }
 

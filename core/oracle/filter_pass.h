@@ -16,7 +16,7 @@ enum class Weighting {
 /// Taps outside the image or without surface are left out; pixels without surface copy.
 struct Pass {
   int radius = 2;
-  bool diamond = false;  ///< only taps with |dx| + |dy| <= radius * step
+  bool diamond = false;                             ///< only taps with |dx| + |dy| <= radius * step
   double kernel[3] = {3.0 / 8, 1.0 / 4, 1.0 / 16};  ///< by |offset|
   int step = 1;
   Weighting weighting = Weighting::kEqual;

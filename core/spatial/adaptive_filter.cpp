@@ -111,8 +111,8 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
 
 FilterWeights kernel_of(int taps) {
   switch (taps) {
-    case 9: return {.radius = 1, .kernel = {1.0f, 0.8f, 0.0f}};
-    case 13: return {.radius = 2, .diamond = true, .kernel = {1.0f, 0.75f, 0.35f}};
+    case 9: return {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
+    case 13: return {.radius = 2, .diamond = true, .kernel = {1.0f, 0.8f, 0.4f}};
     default: assert(taps == 25); return {};
   }
 }

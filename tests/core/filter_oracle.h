@@ -35,6 +35,7 @@ class FilterOracle {
     double sums[kMaxFilterChannels] = {}, weights = 0, spreads = 0;
     for (int ky = -pass_.weights.radius; ky <= pass_.weights.radius; ++ky)
       for (int kx = -pass_.weights.radius; kx <= pass_.weights.radius; ++kx) {
+        if (pass_.weights.diamond && std::abs(kx) + std::abs(ky) > pass_.weights.radius) continue;
         const int qx = px + kx * pass_.step, qy = py + ky * pass_.step;
         if (qx < 0 || qy < 0 || qx >= width_ || qy >= height_ || !(depth(qx, qy) > 0)) continue;
         const double h =

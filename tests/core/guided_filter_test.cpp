@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 
 #include "core/kernels/isa.h"
+#include "core/spatial/adaptive_filter.h"
 #include "core/spatial/tap_weights.h"
 #include "tests/core/filter_oracle.h"
 #include "tests/core/small_world.h"
@@ -95,11 +96,14 @@ struct Images {
   }
 
   FilterRow pass(const Combination& combination, int step, int radius) {
+    return pass(combination, step, FilterWeights{.radius = radius});
+  }
+  FilterRow pass(const Combination& combination, int step, const FilterWeights& weights) {
     FilterRow row;
     kept.clear();
     row.guides = &guides;
     row.kept = &kept;
-    row.weights.radius = radius;
+    row.weights = weights;
     row.step = step;
     row.channels = combination.channels;
     row.spread = combination.spread;
@@ -140,10 +144,9 @@ constexpr double kTolerance = 2e-5;
 // than the pixel: here up to 40.
 constexpr double kKeptSamplesTolerance = 6e-5;
 
-void expect_oracle(Images& images, const Combination& combination, int step, int radius,
-                   std::initializer_list<float> kernel = {}) {
-  FilterRow pass = images.pass(combination, step, radius);
-  std::copy(kernel.begin(), kernel.end(), pass.weights.kernel);
+void expect_oracle(Images& images, const Combination& combination, int step,
+                   const FilterWeights& weights) {
+  const FilterRow pass = images.pass(combination, step, weights);
   const test::FilterOracle oracle(pass, images.camera);
   const int width = images.guides.view.width, height = images.guides.view.height;
   std::vector<test::OraclePixel> expected;
@@ -168,7 +171,7 @@ void expect_oracle(Images& images, const Combination& combination, int step, int
     const bool amplified = kept && combination.spread == Spread::kSamples;
     ASSERT_LE(worst, amplified ? kKeptSamplesTolerance : kTolerance)
         << isa_name(isa) << ", " << width << "x" << height << ", " << combination << ", step "
-        << step << ", radius " << radius;
+        << step << ", radius " << weights.radius << (weights.diamond ? ", diamond" : "");
   }
 }
 
@@ -180,7 +183,8 @@ void expect_oracle_at_every_size(Camera (*camera)(int, int, glm::dvec3, glm::dve
     for (const Combination& combination : kCombinations)
       for (const int step : {1, 2, 3, 4, 8, 128})
         for (const int radius : {1, 2})
-          if (combination.has(step, radius)) expect_oracle(images, combination, step, radius);
+          if (combination.has(step, radius))
+            expect_oracle(images, combination, step, FilterWeights{.radius = radius});
   }
 }
 
@@ -192,15 +196,36 @@ TEST(GuidedFilter, AgreesWithTheOracleUnderAnOrthographicCamera) {
   expect_oracle_at_every_size(test::orthographic_camera);
 }
 
-TEST(GuidedFilter, AgreesWithTheOracleWithTheKernelOfThreeTaps) {
+TEST(GuidedFilter, AgreesWithTheOracleWithEveryKernel) {
   const IsaGuard guard;
   test::Random random(27);
   for (const auto& [width, height] : kSizes) {
     Images images(test::perspective_camera(width, height), width, height, random);
-    for (const Combination& combination : kCombinations) {
-      for (const int step : {1, 2, 4})
-        if (combination.has(step, 1)) expect_oracle(images, combination, step, 1, {0.5f, 0.25f});
-    }
+    for (const Combination& combination : kCombinations)
+      for (const FilterWeights& weights : {kernel_of(9), kernel_of(13), kernel_of(25)})
+        for (const int step : {1, 2, 4})
+          if (combination.has(step, weights.radius))
+            expect_oracle(images, combination, step, weights);
+  }
+}
+
+TEST(GuidedFilter, KernelsHaveAsManyTapsAsTheirNameSays) {
+  const int size = 21;
+  test::Random random(30);
+  Images images(test::orthographic_camera(size, size), size, size, random);
+  images.guides = test::wall(images.camera, size, size);
+  test::fill(images.in[0], 0.0f);
+  images.in[0].at(10, 10) = 1.0f;
+  test::fill(images.spread[0], 1.0f);
+  for (const int taps : {9, 13, 25}) {
+    const FilterRow pass = images.pass({3, Spread::kVariance, false, false}, 3, kernel_of(taps));
+    filter_image(pass);
+    int reached = 0;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) reached += pass.out[0].at(x, y) > 0.0f;
+    EXPECT_EQ(reached, taps);
+    EXPECT_EQ(pass.out[0].at(16, 10) > 0.0f, taps > 9) << "two steps beside";
+    EXPECT_EQ(pass.out[0].at(16, 13) > 0.0f, taps > 13) << "and one below";
   }
 }
 

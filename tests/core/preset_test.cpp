@@ -36,7 +36,7 @@ TEST(Preset, BalancedTakesEveryRecipeAsItIs) {
       const Recipe own = plan.recipe_of(entry);
       EXPECT_EQ(own.radiance_filter.levels, recipe.radiance_filter.levels);
       EXPECT_EQ(own.visibility_filter.levels, recipe.visibility_filter.levels);
-      EXPECT_EQ(own.radiance_filter.radius, 2);
+      EXPECT_EQ(own.radiance_filter.taps, 13);
     }
   }
 }
