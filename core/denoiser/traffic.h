@@ -26,8 +26,9 @@ inline int packing_traffic(int images) { return images + (images + 2) / 3; }
 
 /// Directions, guides, sample twice; cones gathered and updated; their passes.
 inline int cones_traffic(const Recipe& recipe) {
-  const int passes = recipe.indirect_basis == RadianceBasis::kConesColour ? 4 : 2;
-  return 3 + 8 + 6 + passes * (2 * 7 + pass_traffic(7, false, false));
+  const bool colour = recipe.indirect_basis == RadianceBasis::kConesColour;
+  const int passes = colour ? 3 : 2, channels = colour ? 8 : 7;
+  return 3 + 8 + 6 + passes * (2 * channels + pass_traffic(channels, false, false));
 }
 
 /// Both frames' guides and ids, blockers, the field's means; taps, motion and trust.

@@ -8,11 +8,13 @@
 namespace holdfast {
 namespace {
 
-/// Channels of `colours` sums and the samples, rounded up to whole passes.
-constexpr int channels_of(int colours) {
-  const int used = kCones * (colours + 1) + (colours == 1 ? 2 : 0);
-  return (used + kMaxFilterChannels - 1) / kMaxFilterChannels * kMaxFilterChannels;
-}
+/// Channels of `colours` sums and the samples.
+constexpr int channels_of(int colours) { return kCones * (colours + 1) + (colours == 1 ? 2 : 0); }
+
+/// Of these, as many as one pass takes.
+constexpr int pass_channels(int channels) { return channels % 7 == 0 ? 7 : 8; }
+static_assert(channels_of(1) % pass_channels(channels_of(1)) == 0);
+static_assert(channels_of(3) % pass_channels(channels_of(3)) == 0);
 
 int colours_of(RadianceBasis basis) { return basis == RadianceBasis::kConesColour ? 3 : 1; }
 
@@ -40,12 +42,12 @@ void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
-  pass.channels = kMaxFilterChannels;
+  pass.channels = pass_channels(room.kept.count());
   pass.kept = &window.weights;
   pass.spread_in = window.all_ones();
   pass.spread_out = window.spread[0];
-  for (int first = 0; first < room.kept.count(); first += kMaxFilterChannels) {
-    for (int c = 0; c < kMaxFilterChannels; ++c) {
+  for (int first = 0; first < room.kept.count(); first += pass.channels) {
+    for (int c = 0; c < pass.channels; ++c) {
       pass.in[c] = std::as_const(room.updated)[first + c];
       pass.out[c] = room.kept[first + c];
     }

@@ -134,6 +134,7 @@ HOLDFAST_INLINE FilterSums<C> load_sums(const FilterBlock& b, int i) {
   if constexpr (C > 4) s.value[4] = b.sum[4][i];
   if constexpr (C > 5) s.value[5] = b.sum[5][i];
   if constexpr (C > 6) s.value[6] = b.sum[6][i];
+  if constexpr (C > 7) s.value[7] = b.sum[7][i];
   return s;
 }
 
@@ -148,6 +149,7 @@ HOLDFAST_INLINE void store_sums(const FilterSums<C>& s, FilterBlock& b, int i) {
   if constexpr (C > 4) b.sum[4][i] = s.value[4];
   if constexpr (C > 5) b.sum[5][i] = s.value[5];
   if constexpr (C > 6) b.sum[6][i] = s.value[6];
+  if constexpr (C > 7) b.sum[7][i] = s.value[7];
 }
 
 /// Where a tap lies: what the pixel's terms come to there.
@@ -180,6 +182,7 @@ HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>
   if constexpr (C > 4) s.value[4] += w * t.in[4][q];
   if constexpr (C > 5) s.value[5] += w * t.in[5][q];
   if constexpr (C > 6) s.value[6] += w * t.in[6][q];
+  if constexpr (C > 7) s.value[7] += w * t.in[7][q];
 }
 
 /// What the weight of the tap at row position `q` falls with, by e to its power.

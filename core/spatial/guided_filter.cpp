@@ -220,6 +220,9 @@ HOLDFAST_INLINE void footprint_mean4_body(const RowPass& a) {
 HOLDFAST_INLINE void mean7_body(const RowPass& a) {
   filter_row_body<7, Weights::kKept, Spread::kVariance, false>(a);
 }
+HOLDFAST_INLINE void mean8_body(const RowPass& a) {
+  filter_row_body<8, Weights::kKept, Spread::kVariance, false>(a);
+}
 HOLDFAST_INLINE void weighted_mean1_body(const RowPass& a) {
   filter_row_body<1, Weights::kKept, Spread::kSamples, false>(a);
 }
@@ -265,6 +268,7 @@ HOLDFAST_KERNEL(mean3, RowPass)
 HOLDFAST_KERNEL(mean4, RowPass)
 HOLDFAST_KERNEL(footprint_mean4, RowPass)
 HOLDFAST_KERNEL(mean7, RowPass)
+HOLDFAST_KERNEL(mean8, RowPass)
 HOLDFAST_KERNEL(weighted_mean1, RowPass)
 HOLDFAST_KERNEL(footprint_mean1, RowPass)
 HOLDFAST_KERNEL(variance_guided1, RowPass)
@@ -296,7 +300,8 @@ void filter_row(const FilterRow& row) noexcept {
     case 2: return row.footprint[0] ? footprint_mean2(pass) : mean2(pass);
     case 3: return mean3(pass);
     case 4: return row.footprint[0] ? footprint_mean4(pass) : mean4(pass);
-    default: assert(row.channels == 7); return mean7(pass);
+    case 7: return mean7(pass);
+    default: assert(row.channels == 8); return mean8(pass);
   }
 }
 

@@ -12,7 +12,7 @@ namespace holdfast {
 
 class TapWeights;
 
-inline constexpr int kMaxFilterChannels = 7;
+inline constexpr int kMaxFilterChannels = 8;
 inline constexpr int kGreatestStep = 128;
 
 /// Weights of a pass. A tap q of pixel p counts
@@ -56,8 +56,8 @@ struct FilterRow {
   ChannelView<const float> inverse_luminance_sigma;
   /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
   ChannelView<const float> footprint[3];
-  /// Where the weights by geometry are kept from pass to pass. Without luminance, passes of 1, 2, 4
-  /// and 7 channels need it; others do not look at it.
+  /// Where the weights by geometry are kept from pass to pass. Without luminance, passes of 1, 2,
+  /// 4, 7 and 8 channels need it; others do not look at it.
   TapWeights* kept = nullptr;
   /// Tiles at rest copy their inputs. Null: all tiles are active.
   const ActivityMap* activity = nullptr;
@@ -65,10 +65,10 @@ struct FilterRow {
 };
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
-/// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4 with
-/// kVariance (with or without footprint), or of 1 or 7 channels with kVariance, or 3 channels at
-/// any step; with luminance, 1 or 3 channels with either spread, or with kSamples and footprint.
-/// Asserts that the combination is one of these.
+/// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4
+/// with kVariance (with or without footprint), or of 1, 7 or 8 channels with kVariance, or 3
+/// channels at any step; with luminance, 1 or 3 channels with either spread, or with kSamples and
+/// footprint. Asserts that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
 
 /// Runs `pass` at row y.

@@ -6,7 +6,7 @@
 namespace holdfast {
 
 WindowScratch::WindowScratch(int width, int height, Memory memory)
-    : between(width, height, kMaxFilterChannels, memory),
+    : between(width, height, kMostChannels, memory),
       spread(width, height, 2, memory),
       ones(width, 1, 1),
       weights(width, height, memory) {

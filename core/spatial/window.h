@@ -7,7 +7,8 @@ namespace holdfast {
 
 /// Scratch of `window_means`.
 struct WindowScratch {
-  Channels<float> between;  ///< kMaxFilterChannels, after the first pass
+  static constexpr int kMostChannels = 7;
+  Channels<float> between;  ///< kMostChannels, after the first pass
   Channels<float> spread;   ///< 2: after the first pass, result
   Channels<float> ones;     ///< one row, its own
   TapWeights weights;       ///< of the frame; to be cleared before each

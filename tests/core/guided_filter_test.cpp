@@ -35,11 +35,11 @@ constexpr Combination kCombinations[] = {
     {1, Spread::kSamples, false, false},  {1, Spread::kSamples, false, true},
     {1, Spread::kVariance, false, false}, {2, Spread::kVariance, false, false},
     {3, Spread::kVariance, false, false}, {4, Spread::kVariance, false, false},
-    {7, Spread::kVariance, false, false}, {4, Spread::kVariance, false, true},
-    {2, Spread::kVariance, false, true},  {1, Spread::kSamples, true, false},
-    {3, Spread::kSamples, true, false},   {1, Spread::kVariance, true, false},
-    {3, Spread::kVariance, true, false},  {1, Spread::kSamples, true, true},
-    {3, Spread::kSamples, true, true}};
+    {7, Spread::kVariance, false, false}, {8, Spread::kVariance, false, false},
+    {4, Spread::kVariance, false, true},  {2, Spread::kVariance, false, true},
+    {1, Spread::kSamples, true, false},   {3, Spread::kSamples, true, false},
+    {1, Spread::kVariance, true, false},  {3, Spread::kVariance, true, false},
+    {1, Spread::kSamples, true, true},    {3, Spread::kSamples, true, true}};
 
 std::ostream& operator<<(std::ostream& os, const Combination& c) {
   return os << c.channels << " channels, "

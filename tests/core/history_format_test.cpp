@@ -106,9 +106,9 @@ TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
   EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 14, 1.3);
   EXPECT_NEAR(kept_bytes(all, "f32"), floats + 56, 1e-9);
   all.indirect_basis = "cones";
-  EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 28, 1.6);
+  EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 24, 1.6);
   all.half_resolution = {"indirect"};
-  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 11 + (11 + 28) / 4.0, 2.0);
+  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 11 + (11 + 24) / 4.0, 2.0);
 }
 
 TEST(HistoryFormat, ThePlansTextSaysWhatIsKept) {
