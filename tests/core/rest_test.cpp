@@ -220,7 +220,7 @@ double brightness(const RestingSession& session, PlaneId id, double share) {
 // lasting difference (RestFinding::kSlow) ends a rest before the histories of every fifth frame lag
 // five times as far behind. Without it 0.115 and 0.09.
 TEST(Rest, FollowsLightThatChangesByLessThanItsNoiseAlmostAsAlwaysFilteringDoes) {
-  for (const auto& [turns, most] : {std::pair(1, 0.04), {5, 0.055}}) {
+  for (const auto& [turns, most] : {std::pair(1, 0.04), {5, 0.055}, {12, 0.055}}) {
     RestingSession session(RestWorld(turns, 64, 51));
     double share = 1, worst[3] = {};
     int passed_over = 0;
