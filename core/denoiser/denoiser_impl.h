@@ -45,7 +45,7 @@ class Denoiser::Impl {
     else
       make_images(c);
     need = image_bytes().lent;
-    pool->enter(need);
+    images = pool->enter(need);
   }
   ~Impl() { pool->leave(need); }
   Impl(const Impl&) = delete;
@@ -113,8 +113,8 @@ class Denoiser::Impl {
 
   /// Lends memory of the pool to all images that have none, for as long as this lives.
   struct Lending {
-    explicit Lending(Impl& d) : denoiser(d), loan(d.pool->borrow(d.need)) {
-      each_image(denoiser, LendImages{loan.data()});
+    explicit Lending(Impl& d) : denoiser(d), loan(d.pool->borrow(d.need, d.images)) {
+      each_image(denoiser, LendImages{loan.data(), loan.is_as_left()});
     }
     ~Lending() { each_image(denoiser, TakeBackImages{}); }
     Impl& denoiser;
@@ -163,7 +163,7 @@ class Denoiser::Impl {
     config.preset = std::move(preset);
     next_plan.reset();
     const std::size_t needed_before = std::exchange(need, image_bytes().lent);
-    pool->enter(need);
+    images = pool->enter(need);
     pool->leave(needed_before);
     timer.end("preset", 0);
   }
@@ -339,6 +339,7 @@ class Denoiser::Impl {
   Plan plan;
   std::shared_ptr<ScratchPool> pool;
   std::size_t need = 0;           ///< bytes that images are lent
+  std::uint64_t images = 0;       ///< what the pool calls them
   std::optional<Plan> next_plan;  ///< of the preset from the next frame on, if that changes
   Scratch scratch;
   GuidePair guides;

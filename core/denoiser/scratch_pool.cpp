@@ -5,9 +5,10 @@
 
 namespace holdfast {
 
-void ScratchPool::enter(std::size_t bytes) {
+std::uint64_t ScratchPool::enter(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   needs_.insert(bytes);
+  return ++entered_;
 }
 
 void ScratchPool::leave(std::size_t bytes) noexcept {
@@ -20,14 +21,14 @@ void ScratchPool::leave(std::size_t bytes) noexcept {
   });
 }
 
-ScratchPool::Loan ScratchPool::borrow(std::size_t bytes) {
+ScratchPool::Loan ScratchPool::borrow(std::size_t bytes, std::uint64_t images) {
   Block small;  // makes place for a larger one
   {
     const std::lock_guard lock(mutex_);
     const auto fit = std::find_if(idle_.rbegin(), idle_.rend(),
                                   [&](const Block& block) { return block.bytes >= bytes; });
     if (fit != idle_.rend()) {
-      Loan loan(*this, std::move(*fit));
+      Loan loan(*this, std::move(*fit), images);
       idle_.erase(std::next(fit).base());
       return loan;
     }
@@ -43,7 +44,7 @@ ScratchPool::Loan ScratchPool::borrow(std::size_t bytes) {
   }
   small = {};
   try {
-    return {*this, make_block(bytes)};
+    return {*this, make_block(bytes), images};
   } catch (...) {
     const std::lock_guard lock(mutex_);
     count_out(bytes);
@@ -54,7 +55,7 @@ ScratchPool::Loan ScratchPool::borrow(std::size_t bytes) {
 ScratchPool::Block ScratchPool::make_block(std::size_t bytes) {
   auto* data = static_cast<std::byte*>(
       ::operator new (std::max<std::size_t>(bytes, 1), std::align_val_t{64}));
-  return {std::unique_ptr<std::byte, Free>(data), bytes};
+  return {std::unique_ptr<std::byte, Free>(data), bytes, 0};
 }
 
 void ScratchPool::give_back(Block block) noexcept {

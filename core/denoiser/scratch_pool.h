@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -22,6 +23,7 @@ class ScratchPool {
   struct Block {
     std::unique_ptr<std::byte, Free> data;
     std::size_t bytes = 0;
+    std::uint64_t images = 0;  ///< those that it was divided among last; 0: none
   };
 
  public:
@@ -35,22 +37,32 @@ class ScratchPool {
     }
     std::byte* data() const { return block_.data.get(); }  ///< aligned to cache lines
     std::size_t bytes() const { return block_.bytes; }
+    /// Whether nobody but the same images has had it since it was new.
+    bool is_as_left() const { return is_as_left_; }
 
    private:
     friend class ScratchPool;
-    Loan(ScratchPool& pool, Block block) : pool_(pool), block_(std::move(block)) {}
+    Loan(ScratchPool& pool, Block block, std::uint64_t images)
+        : pool_(pool),
+          block_(std::move(block)),
+          is_as_left_(images != 0 && block_.images == images) {
+      block_.images = images;
+    }
     ScratchPool& pool_;
     Block block_;
+    bool is_as_left_;
   };
 
-  /// There is a denoiser that will borrow so much at a time.
-  void enter(std::size_t bytes);
+  /// There is a denoiser that will borrow so much at a time. Returns a number for the images that
+  /// it will divide that among, never the same one.
+  std::uint64_t enter(std::size_t bytes);
   /// It is gone. Blocks that are larger than any of the others needs are freed.
   void leave(std::size_t bytes) noexcept;
 
   /// A block of at least so many bytes: of those that fit the one that was given back last, which
-  /// is the likeliest to be in a cache. Throws std::bad_alloc; nothing has changed then.
-  Loan borrow(std::size_t bytes);
+  /// is the likeliest to be in a cache. `images`: as `enter` gave, or 0 for whatever it is used
+  /// for. Throws std::bad_alloc; nothing has changed then.
+  Loan borrow(std::size_t bytes, std::uint64_t images = 0);
 
   /// What the neediest denoiser needs.
   std::size_t largest() const;
@@ -67,6 +79,7 @@ class ScratchPool {
   std::multiset<std::size_t> needs_;
   std::vector<Block> idle_;             ///< in the order in which they were given back
   std::size_t blocks_ = 0, bytes_ = 0;  ///< idle or lent
+  std::uint64_t entered_ = 0;
 };
 
 }  // namespace holdfast

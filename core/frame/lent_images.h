@@ -26,12 +26,15 @@ struct ImageBytes {
   }
 };
 
-/// Lends memory from `at` on, ImageBytes::lent of it.
+/// Lends memory from `at` on, ImageBytes::lent of it. `as_left`: it is as the same images left it,
+/// their aprons included.
 struct LendImages {
   std::byte* at;
+  bool as_left = false;
   void operator()(auto& images) {
     if (images.memory() == Memory::kOwned) return;
     images.lend(at);
+    if (!as_left) images.clear_apron();
     at += ImageBytes::rounded(images.bytes());
   }
 };

@@ -15,7 +15,8 @@ std::ptrdiff_t padded_stride(int width) {
   // that are a multiple of 16 but not of 64, channels of one image. (At 480x64, whose channels were
   // multiples of 4096 bytes apart, a filter pass over seven took half as long again.)
   const std::ptrdiff_t lines = (width + kLine - 1) / kLine;
-  return (lines < kFew || lines % 2 == 1 ? lines : lines + 1) * kLine;
+  if (lines < kFew) return lines * kLine;
+  return ((width + kApron + kLine - 1) / kLine | 1) * kLine;
 }
 
 AlignedBuffer::AlignedBuffer(std::size_t bytes, Memory memory)

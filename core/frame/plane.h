@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -27,8 +28,14 @@ struct ChannelView {
   operator ChannelView<const T>() const { return {data, width, height, stride}; }
 };
 
+/// Values beside each row of an image of `Channels` that are 0 where its stride leaves room for so
+/// many, so that taps a little outside need no test: after the row, and before the first one.
+/// Nobody writes there.
+inline constexpr std::ptrdiff_t kApron = 16;
+
 /// Values between the starts of two rows: rows begin on cache lines, and no stride is a multiple of
-/// 4096 bytes, which would map every row to the same cache sets.
+/// 4096 bytes, which would map every row to the same cache sets. Rows of 256 values and more have
+/// an apron.
 std::ptrdiff_t padded_stride(int width);
 
 /// Whose memory images lie in.
@@ -74,7 +81,8 @@ class Channels {
         height_(height),
         count_(channels),
         stride_(padded_stride(width)),
-        buffer_(static_cast<std::size_t>(stride_ * height * channels) * sizeof(T), memory) {}
+        buffer_(static_cast<std::size_t>(kBefore + stride_ * height * channels) * sizeof(T),
+                memory) {}
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -82,6 +90,13 @@ class Channels {
   std::size_t bytes() const { return buffer_.size(); }
   Memory memory() const { return buffer_.memory(); }
   void lend(std::byte* data) { buffer_.lend(data); }
+  /// Makes the apron of an image that was lent memory which may hold anything.
+  void clear_apron() {
+    if (stride_ - width_ < kApron) return;
+    std::fill_n(base() - kBefore, kBefore, T{});
+    for (std::ptrdiff_t y = 0; y < std::ptrdiff_t{height_} * count_; ++y)
+      std::fill_n(base() + y * stride_ + width_, stride_ - width_, T{});
+  }
   explicit operator bool() const { return count_ > 0; }
 
   ChannelView<T> operator[](int c) {
@@ -92,7 +107,11 @@ class Channels {
   }
 
  private:
-  T* base() const { return reinterpret_cast<T*>(buffer_.data()); }
+  static constexpr std::ptrdiff_t kBefore = 64 / sizeof(T);  ///< a cache line, >= kApron of words
+
+  T* base() const {
+    return buffer_.data() == nullptr ? nullptr : reinterpret_cast<T*>(buffer_.data()) + kBefore;
+  }
 
   int width_ = 0, height_ = 0, count_ = 0;
   std::ptrdiff_t stride_ = 0;
@@ -114,6 +133,7 @@ class Plane {
   std::size_t bytes() const { return storage_.bytes(); }
   Memory memory() const { return storage_.memory(); }
   void lend(std::byte* data) { storage_.lend(data); }
+  void clear_apron() { storage_.clear_apron(); }
   bool is_uint() const { return plane_traits(id_.kind).scalar == ScalarType::kUint; }
 
   /// Channel of a float plane; asserts the type.

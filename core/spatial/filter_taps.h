@@ -29,8 +29,25 @@ struct TapReads {
   bool geometry, luminance, signals;
 };
 
-/// Copies of the rows of a block whose taps reach beyond the image, with zeros there, which weigh
-/// nothing.
+/// Where taps outside the image read zeros, which weigh nothing.
+enum class Border {
+  kApron,   ///< beside the rows themselves (frame/plane.h)
+  kCopied,  ///< beside copies of the rows
+};
+
+/// Whether no tap of a pass reaches beyond the zeros that are beside rows.
+HOLDFAST_INLINE bool has_apron(const FilterRow& a) {
+  const ChannelView<const float> depth = a.guides->depth();
+  return a.weights.radius * a.step <= kApron && depth.stride - depth.width >= kApron;
+}
+
+/// Whether all taps of a block lie in columns of the image.
+HOLDFAST_INLINE bool is_inside(const FilterRow& a, int x0, int count) {
+  const int reach = a.weights.radius * a.step;
+  return x0 >= reach && x0 + count + reach <= a.guides->view.width;
+}
+
+/// Copies of the rows of a block whose taps reach beyond the image, with zeros there.
 template <int kReach>
 struct PaddedRows {
   static constexpr int kGroup = 16;  ///< values that are copied at once

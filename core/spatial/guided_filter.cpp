@@ -61,14 +61,8 @@ HOLDFAST_INLINE void add_taps(const RowPass& pass, const TapRow& t, int count, i
   }
 }
 
-/// Whether all taps of a block lie in columns of the image.
-HOLDFAST_INLINE bool is_inside(const FilterRow& a, int x0, int count) {
-  const int reach = a.weights.radius * a.step;
-  return x0 >= reach && x0 + count + reach <= a.guides->view.width;
-}
-
 /// The sums of a block whose weights are found here.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
+template <int C, bool kLuminance, Spread kSpread, bool kFootprint, Border kBorder>
 HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
   constexpr TapReads kReads{true, kLuminance, true};
@@ -84,13 +78,13 @@ HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock&
     b.luminance = a.luminance.row(a.y) + x0;
     b.inverse_sigma = a.inverse_luminance_sigma.row(a.y) + x0;
   }
-  const bool inside = is_inside(a, x0, count);
+  const bool copied = kBorder == Border::kCopied && !is_inside(a, x0, count);
   PaddedRows<kGreatestReach> padded;
   for (int ky = -a.weights.radius; ky <= a.weights.radius; ++ky) {
     const int qy = a.y + ky * a.step;
     if (qy < 0 || qy >= a.guides->view.height) continue;
-    const TapRow t = inside ? tap_row<C, kReads>(a, x0, qy)
-                            : padded_tap_row<C, kReads>(a, x0, count, qy, padded);
+    const TapRow t = copied ? padded_tap_row<C, kReads>(a, x0, count, qy, padded)
+                            : tap_row<C, kReads>(a, x0, qy);
     switch (half_width(a.weights, ky)) {
       case 0: add_taps<C, kLuminance, kSpread, kFootprint, 0>(pass, t, count, ky, b); break;
       case 1: add_taps<C, kLuminance, kSpread, kFootprint, 1>(pass, t, count, ky, b); break;
@@ -100,10 +94,11 @@ HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock&
 }
 
 /// The sums of a block whose weights are kept.
-template <int C, Spread kSpread, bool kFootprint>
+template <int C, Spread kSpread, bool kFootprint, Border kBorder>
 HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBlock& b) {
+  const bool copied = kBorder == Border::kCopied && !is_inside(a, x0, count);
   PaddedKeptRows padded;
-  const KeptRows rows = kept_rows<C>(a, x0, count, is_inside(a, x0, count) ? nullptr : &padded);
+  const KeptRows rows = kept_rows<C>(a, x0, count, copied ? &padded : nullptr);
   add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
 }
 
@@ -136,7 +131,7 @@ HOLDFAST_INLINE void write_block(const FilterRow& a, int x0, int count, const Fi
   }
 }
 
-template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint, Border kBorder>
 HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
   if constexpr (kFootprint) {
@@ -145,9 +140,9 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     b.footprint_yy = a.footprint[2].row(a.y) + x0;
   }
   if constexpr (kWeights == Weights::kKept)
-    sum_up_kept<C, kSpread, kFootprint>(a, x0, count, b);
+    sum_up_kept<C, kSpread, kFootprint, kBorder>(a, x0, count, b);
   else
-    sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint>(pass, x0, count, b);
+    sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint, kBorder>(pass, x0, count, b);
   write_block<C, kSpread, kWeights == Weights::kLuminance>(a, x0, count, b);
 }
 
@@ -167,35 +162,46 @@ HOLDFAST_INLINE bool is_active(const FilterRow& a, int x) {
   return a.activity == nullptr || a.activity->active(x, a.y, a.activity_zone);
 }
 
-/// Where a block that begins at x0 must end at the latest: at its size, and where taps come to be
-/// all inside the image, or no longer are, so that few rows are copied.
+/// Where a block that begins at x0 must end at the latest: at its size, and, where rows are copied
+/// for taps outside the image, where those begin or end, so that few are.
+template <Border kBorder>
 HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
   constexpr int kTile = ActivityMap::kTileWidth;
-  const int width = a.guides->view.width, reach = a.weights.radius * a.step;
-  const int first = (reach + kTile - 1) / kTile * kTile, last = (width - reach) / kTile * kTile;
+  const int width = a.guides->view.width;
   const int end = min_of(x0 + kFilterBlock, width);
+  if constexpr (kBorder == Border::kApron) return end;
+  const int reach = a.weights.radius * a.step;
+  const int first = (reach + kTile - 1) / kTile * kTile, last = (width - reach) / kTile * kTile;
   if (x0 < first) return min_of(end, first);
   return x0 < last ? min_of(end, last) : end;
 }
 
 /// The row in blocks: as many neighbouring tiles as fit and are all active, or all at rest.
-template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint, Border kBorder>
+HOLDFAST_INLINE void filter_blocks(const RowPass& pass) {
   const FilterRow& a = pass.row;
   constexpr int kTile = ActivityMap::kTileWidth;
   FilterBlock block;
   const int width = a.guides->view.width;
   for (int x0 = 0; x0 < width;) {
     const bool active = is_active(a, x0);
-    const int limit = last_end(a, x0);
+    const int limit = last_end<kBorder>(a, x0);
     int end = min_of(x0 + kTile, limit);
     while (end < limit && is_active(a, end) == active) end = min_of(end + kTile, limit);
     if (active)
-      filter_block<C, kWeights, kSpread, kFootprint>(pass, x0, end - x0, block);
+      filter_block<C, kWeights, kSpread, kFootprint, kBorder>(pass, x0, end - x0, block);
     else
       copy_block<C>(a, x0, end - x0);
     x0 = end;
   }
+}
+
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
+  if (has_apron(pass.row))
+    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kApron>(pass);
+  else
+    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kCopied>(pass);
 }
 
 // The combinations that the pipeline uses.

@@ -65,7 +65,7 @@ HOLDFAST_INLINE void find_weights_body(const WeightBlock& block) {
     for (int i = 0; i < count; ++i) normal[i] *= a.weights.normal_power;
   PaddedRows<TapWeights::kSteps> padded[3];
   TapRow rows[3];
-  const bool inside = x0 >= step && x0 + count + step <= a.guides->view.width;
+  const bool inside = has_apron(a) || is_inside(a, x0, count);
   for (int k = 0; k < 3; ++k) {
     const int qy = a.y + (k - 1) * step;
     const bool exists = qy >= 0 && qy < height;

@@ -87,7 +87,7 @@ struct Images {
       for (int x = 0; x < width; ++x)
         footprint[1].at(x, y) =
             random.real(-0.9f, 0.9f) * std::sqrt(footprint[0].at(x, y) * footprint[2].at(x, y));
-    // Nothing may read past the end of a row, not even with weight 0.
+    // Nothing may read further past the end of a row than its apron, not even with weight 0.
     for (int c = 0; c < 4; ++c) test::poison_padding(guides.depth_normal[c]);
     for (int c = 0; c < kMaxFilterChannels; ++c) test::poison_padding(in[c]);
     test::poison_padding(spread[0]);
@@ -123,8 +123,8 @@ struct Images {
   }
 };
 
-constexpr std::pair<int, int> kSizes[] = {{1, 1},  {1, 7},    {5, 1},  {3, 3},
-                                          {17, 9}, {129, 33}, {260, 5}};
+constexpr std::pair<int, int> kSizes[] = {{1, 1},  {1, 7},    {5, 1},   {3, 3},
+                                          {17, 9}, {129, 33}, {260, 5}, {257, 3}};
 
 class IsaGuard {
  public:
@@ -169,6 +169,8 @@ void expect_oracle(Images& images, const Combination& combination, int step,
       }
     const bool kept = combination.needs_kept_weights();
     const bool amplified = kept && combination.spread == Spread::kSamples;
+    for (int c = 0; c < combination.channels; ++c)
+      ASSERT_TRUE(test::has_clean_apron(pass.out[c])) << isa_name(isa) << ", " << combination;
     ASSERT_LE(worst, amplified ? kKeptSamplesTolerance : kTolerance)
         << isa_name(isa) << ", " << width << "x" << height << ", " << combination << ", step "
         << step << ", radius " << weights.radius << (weights.diamond ? ", diamond" : "");

@@ -137,6 +137,22 @@ TEST(SharedScratch, NothingOfWhatItHeldShowsUnderAnyPresetBasisOrResolution) {
         }
 }
 
+// Rows of 256 pixels and more have an apron that taps read, at half resolution those of twice that.
+TEST(SharedScratch, NothingOfWhatItHeldShowsBesideWideRows) {
+  for (const char* history : {"f32", "f16"}) {
+    DenoiserConfig fast = config_of("fast", 530, 18), cones = config_of("accurate", 272, 9);
+    fast.history = cones.history = history;
+    EXPECT_TRUE(ignores_what_scratch_holds(fast)) << history;
+    EXPECT_TRUE(ignores_what_scratch_holds(cones)) << history;
+    for (const char* recipe : {"reliable", "paper", "svgf", "spatial"}) {
+      DenoiserConfig config = config_of("balanced", 257, 10);
+      config.recipe = recipe;
+      config.history = history;
+      EXPECT_TRUE(ignores_what_scratch_holds(config)) << recipe << ' ' << history;
+    }
+  }
+}
+
 TEST(SharedScratch, NothingOfWhatItHeldShowsWherePlanesLack) {
   DenoiserConfig config = test::shadow_config();
   EXPECT_TRUE(ignores_what_scratch_holds(config));
@@ -232,8 +248,9 @@ TEST(SharedScratch, DenoisersOnSeveralThreadsGiveTheBitsOfThoseAlone) {
 TEST(SharedScratch, IsMostOfWhatADenoiserWorksWith) {
   const Denoiser floats(config_of("balanced", 64, 64));
   EXPECT_GT(floats.scratch_bytes(), 400u * 64 * 64);
-  EXPECT_EQ(floats.held_bytes(), floats.history_bytes() + (24 + 8 + 32 + 8) * 64 * 64)
-      << "guides and a history of one and of three channels to change places with, given vectors";
+  EXPECT_EQ(floats.held_bytes(), floats.history_bytes() + (24 + 8 + 32 + 8) * 64 * 64 + 6 * 64)
+      << "guides and a history of one and of three channels to change places with, given vectors; "
+         "a cache line before each of the six images";
   DenoiserConfig config = config_of("balanced", 64, 64);
   config.preset = "reference";
   EXPECT_EQ(Denoiser(config).scratch_bytes(), 0u);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -97,10 +98,25 @@ inline void fill_random(ChannelView<float> channel, Random& random, float low, f
     for (int x = 0; x < channel.width; ++x) channel.at(x, y) = random.real(low, high);
 }
 
-/// Puts NaN between the end of each row and the start of the next, where nothing may read.
+/// Puts NaN between the end of each row and the start of the next, where nothing may read: all of
+/// it, or where there is an apron what is beyond.
 inline void poison_padding(ChannelView<float> channel) {
+  const std::ptrdiff_t apron = channel.stride - channel.width < kApron ? 0 : kApron;
   for (int y = 0; y < channel.height; ++y)
-    for (std::ptrdiff_t x = channel.width; x < channel.stride; ++x) channel.row(y)[x] = kNaN;
+    for (std::ptrdiff_t x = channel.width + apron; x < channel.stride - apron; ++x)
+      channel.row(y)[x] = kNaN;
+}
+
+/// Whether the apron of an image, if its rows have one, is still 0.
+inline bool has_clean_apron(ChannelView<const float> channel) {
+  if (channel.stride - channel.width < kApron) return true;
+  const auto is_clean = [](const float* at) {
+    return std::all_of(at, at + kApron, [](float value) { return value == 0.0f; });
+  };
+  for (int y = 0; y < channel.height; ++y)
+    if (!is_clean(channel.row(y) + channel.width) || !is_clean(channel.row(y) - kApron))
+      return false;
+  return true;
 }
 
 }  // namespace holdfast::test
