@@ -31,7 +31,7 @@ struct TapReads {
 
 /// Where taps outside the image read zeros, which weigh nothing.
 enum class Border {
-  kApron,   ///< beside the rows themselves (frame/plane.h)
+  kBeside,  ///< beside the rows themselves: kApron of frame/plane.h
   kCopied,  ///< beside copies of the rows
 };
 

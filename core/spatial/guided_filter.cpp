@@ -169,7 +169,7 @@ HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
   constexpr int kTile = ActivityMap::kTileWidth;
   const int width = a.guides->view.width;
   const int end = min_of(x0 + kFilterBlock, width);
-  if constexpr (kBorder == Border::kApron) return end;
+  if constexpr (kBorder == Border::kBeside) return end;
   const int reach = a.weights.radius * a.step;
   const int first = (reach + kTile - 1) / kTile * kTile, last = (width - reach) / kTile * kTile;
   if (x0 < first) return min_of(end, first);
@@ -199,7 +199,7 @@ HOLDFAST_INLINE void filter_blocks(const RowPass& pass) {
 template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
   if (has_apron(pass.row))
-    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kApron>(pass);
+    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kBeside>(pass);
   else
     filter_blocks<C, kWeights, kSpread, kFootprint, Border::kCopied>(pass);
 }
