@@ -94,7 +94,7 @@ TEST(HistoryFormat, MomentsOfTheLuminanceStayFloats) {
 TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
   constexpr double kGuides = 4 + 12 + 4, kPacked = 4 + 4 + 4;
   constexpr double kLines = 16.0 * 64 / (64 * 64);  // a cache line before each of up to 16 images
-  constexpr double kResults = 4, kColours = 12;  // of components that may rest: floats alone
+  constexpr double kResults = 4, kColours = 12;     // of components that may rest: floats alone
   DenoiserConfig shadows = test::shadow_config(64, 64);
   EXPECT_NEAR(kept_bytes(shadows, "f16"), kPacked + 2 + 1, 1.0 + kLines);
   EXPECT_NEAR(kept_bytes(shadows, "f32"), kGuides + 8 + kResults, kLines);
@@ -109,7 +109,8 @@ TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
   all.indirect_basis = "cones";
   EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 24, 1.6 + kLines);
   all.half_resolution = {"indirect"};
-  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 11 + (11 + 24) / 4.0, 2.0 + kLines);
+  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 11 + (11 + 24) / 4.0,
+              2.0 + kLines);
 }
 
 TEST(HistoryFormat, ThePlansTextSaysWhatIsKept) {
