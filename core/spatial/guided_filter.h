@@ -38,8 +38,8 @@ enum class Spread {
               ///< out = sum g N in / sum g N,  N' = (sum g N)^2 / sum g^2 N
 };
 
-/// The pass of one row. All images share size and stride. Pixels without surface (depth 0) copy
-/// their inputs; taps without surface have weight 0.
+/// The pass of one row. All images share size and stride, and 0 beside their rows (kApron). Pixels
+/// without surface (depth 0) copy their inputs; taps without surface have weight 0.
 struct FilterRow {
   const Guides* guides = nullptr;
   FilterWeights weights;

@@ -157,6 +157,34 @@ TEST(Denoiser, SurvivesBadValuesInEveryPlaneUnderEveryRecipe) {
   }
 }
 
+/// `frame` with NaN beside the rows of its planes, where the core's own images have zeros.
+void spoil_beside_rows(Frame& frame) {
+  for (Plane& plane : frame.planes)
+    for (int c = 0; c < plane.channels(); ++c) {
+      const ChannelView<std::uint32_t> words = plane.words(c);
+      for (int y = 0; y < words.height; ++y)
+        std::fill(words.row(y) + words.width, words.row(y) + words.stride, 0x7fc00000u);
+    }
+}
+
+// Rows of 256 pixels and more have 16 values beside them that taps read unasked.
+TEST(Denoiser, NothingBesideTheRowsOfPlanesShows) {
+  for (const char* preset : {"fast", "balanced", "accurate"})
+    for (const char* recipe : {"reliable", "paper", "svgf", "spatial"}) {
+      DenoiserConfig config = full_config(530, 11);
+      config.preset = preset;
+      config.recipe = recipe;
+      Denoiser spoiled(config), clean(config);
+      for (int index = 0; index < 3; ++index) {
+        Frame frame = noisy_frame(config, index);
+        const PlaneSet expected = test::filtered(clean, frame);
+        spoil_beside_rows(frame);
+        EXPECT_TRUE(test::same_bits(test::filtered(spoiled, frame), expected))
+            << preset << ' ' << recipe << ' ' << index;
+      }
+    }
+}
+
 /// Mean difference of two result sets over all values.
 double mean_difference(const PlaneSet& a, const PlaneSet& b) {
   double sum = 0, count = 0;

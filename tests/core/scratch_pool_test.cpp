@@ -144,9 +144,10 @@ TEST(SharedScratch, NothingOfWhatItHeldShowsBesideWideRows) {
     fast.history = cones.history = history;
     EXPECT_TRUE(ignores_what_scratch_holds(fast)) << history;
     EXPECT_TRUE(ignores_what_scratch_holds(cones)) << history;
-    for (const char* recipe : {"reliable", "paper", "svgf", "spatial"}) {
-      DenoiserConfig config = config_of("balanced", 257, 10);
-      config.recipe = recipe;
+    for (const char* recipe : {"reliable", "paper", "paper-adaptive", "svgf", "asvgf", "spatial"}) {
+      DenoiserConfig config = config_with_gradients(recipe);
+      config.width = 257;
+      config.height = 10;
       config.history = history;
       EXPECT_TRUE(ignores_what_scratch_holds(config)) << recipe << ' ' << history;
     }
