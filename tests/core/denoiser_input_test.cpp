@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <bit>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -157,13 +159,19 @@ TEST(Denoiser, SurvivesBadValuesInEveryPlaneUnderEveryRecipe) {
   }
 }
 
-/// `frame` with NaN beside the rows of its planes, where the core's own images have zeros.
+/// Goes on with the rows of `frame`'s planes beside them, where the core's own images have zeros:
+/// with what each begins with, and with NaN in the frames between.
 void spoil_beside_rows(Frame& frame) {
   for (Plane& plane : frame.planes)
     for (int c = 0; c < plane.channels(); ++c) {
       const ChannelView<std::uint32_t> words = plane.words(c);
-      for (int y = 0; y < words.height; ++y)
-        std::fill(words.row(y) + words.width, words.row(y) + words.stride, 0x7fc00000u);
+      for (int y = 0; y < words.height; ++y) {
+        std::uint32_t* row = words.row(y);
+        std::copy_n(row, words.stride - words.width, row + words.width);
+        if (frame.index % 2 == 0)
+          std::fill(row + words.width, row + words.stride,
+                    std::bit_cast<std::uint32_t>(test::kNaN));
+      }
     }
 }
 
