@@ -22,8 +22,9 @@ std::uint64_t count_rows(int height, const Body& body) {
 
 constexpr float kMost = std::numeric_limits<float>::max();
 
-/// One row of depths, of normals or of a signal; `repaired` grows by the number of repaired values.
-struct DepthRow {
+/// One row of depths or roughnesses, of normals or of a signal; `repaired` grows by the number of
+/// repaired values.
+struct ScalarRow {
   const float* in;
   int width;
   float* out;
@@ -45,7 +46,7 @@ struct SignalRow {
   int* repaired;
 };
 
-HOLDFAST_INLINE void depth_row_body(const DepthRow& a) {
+HOLDFAST_INLINE void depth_row_body(const ScalarRow& a) {
   const float* __restrict in = a.in;
   float* __restrict out = a.out;
   int repaired = 0;
@@ -66,18 +67,37 @@ HOLDFAST_INLINE void normal_row_body(const NormalRow& a) {
   float* __restrict out_z = a.out[2];
   const float tx = a.towards_camera[0], ty = a.towards_camera[1], tz = a.towards_camera[2];
   int repaired = 0;
+#pragma GCC ivdep
   for (int x = 0; x < a.width; ++x) {
-    const float length = __builtin_sqrtf(nx[x] * nx[x] + ny[x] * ny[x] + nz[x] * nz[x]);
-    const bool surface = depth[x] > 0.0f;
-    const bool usable = length >= kShortestNormal && length <= kLongestNormal;
-    const float scale = 1.0f / (usable ? length : 1.0f);
-    repaired += surface && !usable ? 1 : 0;
-    const float ux = usable ? nx[x] * scale : tx;
-    const float uy = usable ? ny[x] * scale : ty;
-    const float uz = usable ? nz[x] * scale : tz;
-    out_x[x] = surface ? ux : 0.0f;
-    out_y[x] = surface ? uy : 0.0f;
-    out_z[x] = surface ? uz : 0.0f;
+    const float vx = nx[x], vy = ny[x], vz = nz[x];
+    const float length = __builtin_sqrtf(vx * vx + vy * vy + vz * vz);
+    const float not_long = length <= kLongestNormal ? length : 0.0f;
+    const float usable = not_long >= kShortestNormal ? not_long : 0.0f;  // length, or 0
+    const float scale = 1.0f / max_of(usable, kShortestNormal);
+    const float own_x = vx * scale, own_y = vy * scale, own_z = vz * scale;
+    const float ux = usable > 0.0f ? own_x : tx;
+    const float uy = usable > 0.0f ? own_y : ty;
+    const float uz = usable > 0.0f ? own_z : tz;
+    const int bad = usable > 0.0f ? 0 : 1;
+    out_x[x] = depth[x] > 0.0f ? ux : 0.0f;
+    out_y[x] = depth[x] > 0.0f ? uy : 0.0f;
+    out_z[x] = depth[x] > 0.0f ? uz : 0.0f;
+    repaired += depth[x] > 0.0f ? bad : 0;
+  }
+  *a.repaired += repaired;
+}
+
+HOLDFAST_INLINE void roughness_row_body(const ScalarRow& a) {
+  const float* __restrict in = a.in;
+  float* __restrict out = a.out;
+  int repaired = 0;
+  for (int x = 0; x < a.width; ++x) {
+    const float v = in[x];
+    const float inside = v <= 1.0f ? v : 1.0f;
+    const int beyond = v <= 1.0f ? 0 : 1;
+    const float below = v < 0.0f ? 0.0f : 1.0f;
+    out[x] = v >= 0.0f ? inside : below;
+    repaired += v >= 0.0f ? beyond : 1;
   }
   *a.repaired += repaired;
 }
@@ -99,8 +119,9 @@ HOLDFAST_INLINE void signal_row_body(const SignalRow& a) {
 }
 
 HOLDFAST_KERNEL(signal_row, SignalRow)
-HOLDFAST_KERNEL(depth_row, DepthRow)
+HOLDFAST_KERNEL(depth_row, ScalarRow)
 HOLDFAST_KERNEL(normal_row, NormalRow)
+HOLDFAST_KERNEL(roughness_row, ScalarRow)
 
 }  // namespace
 
@@ -139,15 +160,10 @@ void load_ids(const Plane* ids, Channels<std::uint32_t>& out) {
 
 std::uint64_t load_roughness(const Plane& roughness, Guides& out) {
   return count_rows(roughness.height(), [&](int y) {
-    std::uint64_t repaired = 0;
-    const float* in = roughness.channel(0).row(y);
-    float* to = out.roughness[0].row(y);
-    for (int x = 0; x < roughness.width(); ++x) {
-      const bool usable = in[x] >= 0.0f && in[x] <= 1.0f;
-      to[x] = usable ? in[x] : (in[x] < 0.0f ? 0.0f : 1.0f);
-      repaired += usable ? 0 : 1;
-    }
-    return repaired;
+    int repaired = 0;
+    roughness_row(
+        {roughness.channel(0).row(y), roughness.width(), out.roughness[0].row(y), &repaired});
+    return static_cast<std::uint64_t>(repaired);
   });
 }
 

@@ -170,9 +170,9 @@ HOLDFAST_INLINE bool weigh(const AccumulationBlock& a, const TapLanes& lanes, fl
       clamped[i] = trust[i] * (a.lanes.effect[i] > 0.0f ? of_effect : of_surface);
   if (a.lanes.trust != nullptr)
     for (int i = 0; i < a.count; ++i) trust[i] *= a.lanes.trust[i];
-  float any = 0.0f;
-  for (int i = 0; i < a.count; ++i) any = max_of(any, clamped[i]);
-  return any > 0.0f;
+  int any = 0;
+  for (int i = 0; i < a.count; ++i) any |= clamped[i] > 0.0f ? 1 : 0;
+  return any != 0;
 }
 
 HOLDFAST_INLINE void accumulate_kernel_body(const AccumulationBlock& a) {

@@ -19,7 +19,8 @@ HOLDFAST_INLINE std::int32_t base_of(ByteKind kind) {
 HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
   const float* in = a.in;
   std::uint8_t* out = a.out;
-  const int shift = block_shift(in, a.count, 0);
+  const int count = a.count;
+  const int shift = block_shift(in, count, 0);
   *a.exponent = static_cast<std::int8_t>(shift);
   const float scale = power_of_two(shift);
   const std::int32_t base = base_of(a.kind);
@@ -28,7 +29,7 @@ HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
   const std::uint32_t* random = a.random;
   const std::uint32_t sign_mask = a.kind == ByteKind::kSigned ? 0x80u : 0u;
 #pragma GCC ivdep
-  for (int i = 0; i < a.count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const std::uint32_t noise = random[i] & noise_mask;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
     const std::uint32_t rounded = ((bits & kMagnitudeBits) + noise) >> lost;

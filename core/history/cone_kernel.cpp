@@ -18,11 +18,13 @@ HOLDFAST_INLINE void recall_body(const ConeRecall& a) {
   for (int axis = 0; axis < 3; ++axis) gather_lanes(a.previous.normal(axis), lanes, a.before[axis]);
   const float *bx = a.before[0], *by = a.before[1], *bz = a.before[2];
   const float *nx = a.normal[0], *ny = a.normal[1], *nz = a.normal[2];
+  std::uint8_t* turned = a.turned;
+  const int count = a.rows.count;
 #pragma GCC ivdep
-  for (int i = 0; i < a.rows.count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const Float3 from{bx[i], by[i], bz[i]};
     const float same = kSameConesCosine * __builtin_sqrtf(dot(from, from));
-    a.turned[i] = dot(from, {nx[i], ny[i], nz[i]}) < same ? 1 : 0;
+    turned[i] = dot(from, {nx[i], ny[i], nz[i]}) < same ? 1 : 0;
   }
 }
 

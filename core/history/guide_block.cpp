@@ -9,7 +9,7 @@ constexpr float kSteps = 32767.0f;         // of a coordinate of the square, fro
 constexpr float kRoughnessSteps = 255.0f;  // from 0 to 1
 
 HOLDFAST_INLINE float with_sign_of(float magnitude, float sign) {
-  return sign < 0.0f ? -magnitude : magnitude;
+  return __builtin_copysignf(magnitude, sign);
 }
 
 HOLDFAST_INLINE std::uint32_t step_of(float coordinate) {
@@ -23,7 +23,8 @@ HOLDFAST_INLINE void normals_body(const GuidePacking& a) {
   const float* __restrict ny = a.normal[1];
   const float* __restrict nz = a.normal[2];
   std::uint32_t* __restrict out = a.packed_normal;
-  for (int i = 0; i < a.count; ++i) {
+  const int count = a.count;
+  for (int i = 0; i < count; ++i) {
     const float x = nx[i], y = ny[i], z = nz[i];
     const float reach = max_of(abs_of(x) + abs_of(y) + abs_of(z), 1e-30f);
     const float u = x / reach, v = y / reach;
@@ -37,7 +38,8 @@ HOLDFAST_INLINE void normals_body(const GuidePacking& a) {
 HOLDFAST_INLINE void roughness_body(const GuidePacking& a) {
   const float* __restrict in = a.roughness;
   std::uint8_t* __restrict out = a.packed_roughness;
-  for (int i = 0; i < a.count; ++i) {
+  const int count = a.count;
+  for (int i = 0; i < count; ++i) {
     const float step = in[i] * kRoughnessSteps + 0.5f;
     const float inside = min_of(max_of(step, 1.0f), kRoughnessSteps - 1.0f);
     const float kept = in[i] > 0.0f && in[i] < 1.0f ? inside : step;

@@ -39,6 +39,7 @@ HOLDFAST_INLINE void narrow_kernel_body(const NarrowRow& a) {
   float* __restrict out0 = a.out[0];
   float* __restrict out1 = a.out[1];
   float* __restrict out2 = a.out[2];
+#pragma GCC ivdep
   for (int x = 0; x < a.width; ++x) {
     const float scale = __builtin_sqrtf(__builtin_sqrtf(samples[x]));
     out0[x] = in0[x] * scale;

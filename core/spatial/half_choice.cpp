@@ -119,7 +119,9 @@ HOLDFAST_INLINE void choose_body(const ChoiceBlock& a) {
   }
   elect(s, agree, a.count, best, most);
   std::uint32_t* representative = a.grid.representative[0].row(a.y) + a.x;
-  for (int i = 0; i < a.count; ++i) representative[i] = static_cast<std::uint32_t>(best[i]);
+  const int count = a.count;
+  for (int i = 0; i < count; ++i)
+    representative[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(best[i]));
   for (int k = 0; k < kQuad; ++k) {
     float* share = a.grid.share[k].row(a.y) + a.x;
     const float first = k == 0 ? 1.0f : 0.0f;
