@@ -32,18 +32,21 @@ HOLDFAST_INLINE void find_group_runs(TapLanes& lanes, int group, std::int32_t la
   const std::int32_t* start = lanes.start + group * kTapGroup;
   std::int32_t* starts = lanes.starts[group];
   int runs = 0;
-  std::int32_t last = kNoStart;
-  for (int i = 0; i < kTapGroup; ++i) {
-    if (start[i] == last || start[i] == kNoStart) continue;
-    last = start[i];
-    int run = 0;
-    while (run < runs && starts[run] != last) ++run;
-    if (run < runs) continue;
-    if (runs == kMostStarts || last + group * kTapGroup < 0 || last > last_start) {
+  for (std::int32_t from = std::numeric_limits<std::int32_t>::min();; ++runs) {
+    // The least start from `from` on, whose difference is the least: those below wrap around.
+    std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+#pragma GCC unroll 1
+    for (int i = 0; i < kTapGroup; ++i)
+      least =
+          min_of(least, static_cast<std::uint32_t>(start[i]) - static_cast<std::uint32_t>(from));
+    const auto next = static_cast<std::int32_t>(static_cast<std::uint32_t>(from) + least);
+    if (next == kNoStart || next < from) break;
+    if (runs == kMostStarts || next + group * kTapGroup < 0 || next > last_start) {
       lanes.runs[group] = -1;
       return;
     }
-    starts[runs++] = last;
+    starts[runs] = next;
+    from = next + 1;
   }
   lanes.runs[group] = runs;
 }
