@@ -5,6 +5,7 @@ import unittest
 from pathlib import Path
 
 import include_rules
+import lanes
 import text_rules
 from source_tree import SourceTree
 
@@ -150,6 +151,25 @@ class Text(RulesTest):
         self.write("core/shading/generated/table.h", f"{marker}\n" * (text_rules.MAX_LINES + 1))
         self.assertEqual(text_rules.check_markers(self.tree), [])
         self.assertEqual(text_rules.check_length(self.tree), [])
+
+
+class Lanes(unittest.TestCase):
+    def count(self, name, *instructions):
+        lines = [f"0000000000501300 <{name}>:"] + [f"  501300:\t{i}" for i in instructions]
+        return lanes.kernels_of(lines + ["", "0000000000501400 <main>:", "  501400:\tret"])
+
+    def test_arithmetic_on_512_bits_is_counted(self):
+        name = "holdfast::(anonymous namespace)::sum_v4(holdfast::Row const&)"
+        self.assertEqual(self.count(name, "vaddps %zmm0,%zmm1,%zmm2", "vmulss %xmm0,%xmm1,%xmm2"),
+                         {name: 1})
+
+    def test_moves_and_single_values_are_not(self):
+        name = "holdfast::(anonymous namespace)::sum_v4(holdfast::Row const&)"
+        self.assertEqual(self.count(name, "vmovups (%rdi),%zmm0", "vaddss %xmm0,%xmm1,%xmm2",
+                                    "vpxor %zmm1,%zmm1,%zmm1"), {name: 0})
+
+    def test_other_functions_do_not_count(self):
+        self.assertEqual(self.count("holdfast::sum(holdfast::Row const&)", "vaddps %zmm0,%zmm1,%zmm2"), {})
 
 
 if __name__ == "__main__":
