@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/history/motion_block.h"
 #include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
 #include "core/kernels/random.h"
@@ -173,15 +174,10 @@ class GlossyTracer {
 
   /// Writes the vectors of the pixels from (x, y) on: none where there are no taps.
   void write(int x, int y, int count, const Lanes& lanes, EffectHistory& out) const {
-    float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
-          *trust = out.motion[kMotionTrust].row(y) + x;
-    const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
-    for (int i = 0; i < count; ++i) {
-      const bool any = lanes.any[i] > 0.0f;
-      motion_x[i] = any ? lanes.wanted.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
-      motion_y[i] = any ? lanes.wanted.y[i] - row : 0.0f;
-      trust[i] = lanes.any[i];
-    }
+    write_motion({lanes.wanted.x, lanes.wanted.y, lanes.any, count, static_cast<float>(x) + 0.5f,
+                  static_cast<float>(y) + 0.5f, out.motion[kMotionX].row(y) + x,
+                  out.motion[kMotionY].row(y) + x, nullptr});
+    std::copy_n(lanes.any, count, out.motion[kMotionTrust].row(y) + x);
   }
 
   const Guides& now_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/history/motion_block.h"
 #include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
 #include "core/motion/shadow_falloff.h"
@@ -106,15 +107,11 @@ void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, 
     find_block_taps(search);
     std::fill_n(trust, count, 1.0f);
   }
-  float *motion_x = out.motion[kMotionX].row(y) + x, *motion_y = out.motion[kMotionY].row(y) + x,
-        *motion_trust = out.motion[kMotionTrust].row(y) + x;
-  const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
-  for (int i = 0; i < count; ++i) {
-    const bool there = found.found[i] != 0.0f;
-    motion_x[i] = there ? found.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
-    motion_y[i] = there ? found.y[i] - row : 0.0f;
-    motion_trust[i] = any[i] > 0.0f ? trust[i] : 0.0f;
-  }
+  write_motion({found.x, found.y, found.found, count, static_cast<float>(x) + 0.5f,
+                static_cast<float>(y) + 0.5f, out.motion[kMotionX].row(y) + x,
+                out.motion[kMotionY].row(y) + x, nullptr});
+  float* motion_trust = out.motion[kMotionTrust].row(y) + x;
+  for (int i = 0; i < count; ++i) motion_trust[i] = any[i] > 0.0f ? trust[i] : 0.0f;
   std::copy_n(found.sweep, count, out.motion[kMotionSweep].row(y) + x);
 }
 

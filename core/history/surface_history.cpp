@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/history/motion_block.h"
 #include "core/history/tap_search.h"
 #include "core/kernels/parallel.h"
 
@@ -21,17 +22,17 @@ struct Lanes {
 
 /// The motion of those that are `found`; returns whether any of them has not moved.
 bool take_motion(const FollowedBlock& found, int x, int y, int count, SurfaceHistory& out) {
-  float *motion_x = out.motion[0].row(y) + x, *motion_y = out.motion[1].row(y) + x;
-  const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
-  int stay = 0;
-  for (int i = 0; i < count; ++i) {
-    const bool any = found.found[i] != 0.0f;
-    motion_x[i] = any ? found.x[i] - (static_cast<float>(i) + first_x) : 0.0f;
-    motion_y[i] = any ? found.y[i] - row : 0.0f;
-    stay |= static_cast<int>(any) & static_cast<int>(motion_x[i] == 0.0f) &
-            static_cast<int>(motion_y[i] == 0.0f);
-  }
-  return stay != 0;
+  std::int32_t any_stays = 0;
+  write_motion({found.x, found.y, found.found, count, static_cast<float>(x) + 0.5f,
+                static_cast<float>(y) + 0.5f, out.motion[0].row(y) + x, out.motion[1].row(y) + x,
+                &any_stays});
+  return any_stays != 0;
+}
+
+bool all_positive(const float* values, int count) {
+  int all = 1;
+  for (int i = 0; i < count; ++i) all &= values[i] > 0.0f ? 1 : 0;
+  return all != 0;
 }
 
 /// The taps of those that are `found`, of others none. Where both frames show the same surface and
@@ -148,8 +149,7 @@ void trace_moving(const FramePair& frames, const Plane* given_motion, const Bloc
     found.found[i] = pixels.depth[i] > 0.0f ? found.found[i] : 0.0f;
   const bool any_stays = take_motion(found, x, y, pixels.count, out);
   take_taps(frames, lanes, any_stays, x, y, pixels.count, out.taps[0].row(y) + x, out);
-  out.complete[0].at(x / SurfaceHistory::kBlock, y) =
-      std::all_of(lanes.any, lanes.any + pixels.count, [](float any) { return any > 0.0f; });
+  out.complete[0].at(x / SurfaceHistory::kBlock, y) = all_positive(lanes.any, pixels.count);
 }
 
 /// Any other block.

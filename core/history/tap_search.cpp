@@ -17,7 +17,8 @@ struct FoundTaps {
   TapLanes lanes;
   float column[kFollowBlock], row[kFollowBlock];  ///< of the first of the four pixels
   std::int32_t lost[kFollowBlock];                ///< 1: none of the four is valid
-  float any[kFollowBlock];                        ///< 1: there are taps
+  std::int32_t any_lost;
+  float any[kFollowBlock];  ///< 1: there are taps
 };
 
 /// What the previous frame shows at the four pixels; depth 0 where there is none.
@@ -173,11 +174,14 @@ HOLDFAST_INLINE void test_surfaces(const TapSearch& a, int dx, int dy, FoundTaps
 HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
   float *w0 = out.lanes.weight[0], *w1 = out.lanes.weight[1], *w2 = out.lanes.weight[2],
         *w3 = out.lanes.weight[3];
+  int any_lost = 0;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float sum = w0[i] + w1[i] + w2[i] + w3[i];
     const float kept = sum > kLeastTapSum ? 1.0f : 0.0f, divisor = sum > kLeastTapSum ? sum : 1.0f;
-    out.lost[i] = sum > kLeastTapSum ? 0 : out.lost[i];
+    const std::int32_t lost = sum > kLeastTapSum ? 0 : out.lost[i];
+    out.lost[i] = lost;
+    any_lost |= lost;
     out.any[i] = kept;
     const float inverse = kept / divisor;
     const float n0 = w0[i] * inverse, n1 = w1[i] * inverse, n2 = w2[i] * inverse,
@@ -188,6 +192,7 @@ HOLDFAST_INLINE void normalise_weights(int count, FoundTaps& out) {
     w2[i] = n2 + n2 * left;
     w3[i] = n3 + n3 * left;
   }
+  out.any_lost = any_lost;
 }
 
 /// Leaves out what is of another roughness.
@@ -248,7 +253,7 @@ void find_block_taps(const TapSearch& search) {
   receivers({search, found});
   write_taps(found.lanes, search.taps);
   const FollowedBlock& at = search.followed;
-  for (int i = 0; i < search.count; ++i) {
+  for (int i = 0; found.any_lost != 0 && i < search.count; ++i) {
     if (!found.lost[i]) continue;
     Taps taps = rescue_taps(search.previous, at.x[i], at.y[i], receiver_of(at, i, search.id[i]));
     if (search.roughness != nullptr && !is_as_rough(search.previous, taps, search.roughness[i]))
@@ -263,7 +268,7 @@ void find_block_taps_on_any_surface(const TapSearch& search) {
   FoundTaps found;
   surfaces({search, found});
   write_taps(found.lanes, search.taps);
-  for (int i = 0; i < search.count; ++i) {
+  for (int i = 0; found.any_lost != 0 && i < search.count; ++i) {
     if (!found.lost[i]) continue;
     search.taps[i] =
         rescue_taps_on_any_surface(search.previous, search.followed.x[i], search.followed.y[i]);
