@@ -17,8 +17,8 @@ struct FoundTaps {
   TapLanes lanes;
   float column[kFollowBlock], row[kFollowBlock];  ///< of the first of the four pixels
   std::int32_t lost[kFollowBlock];                ///< 1: none of the four is valid
-  std::int32_t any_lost;
-  float any[kFollowBlock];  ///< 1: there are taps
+  std::int32_t any_lost = 0;                      ///< 1: any of them is
+  float any[kFollowBlock];                        ///< 1: there are taps
 };
 
 /// What the previous frame shows at the four pixels; depth 0 where there is none.
