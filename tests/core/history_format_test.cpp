@@ -57,13 +57,18 @@ DenoiserConfig packed_config(int width = 37, int height = 29) {
   return config;
 }
 
+constexpr std::size_t kMostImages =
+    20;  // that a session here keeps: guides of two sizes, 3 of each component and its cones
+
 /// What a pixel takes: what twice the rows take more, so that what images have before them is out.
 double kept_bytes(DenoiserConfig config, const std::string& history) {
   config.history = history;
   const double pixels = config.width * config.height;
   const std::size_t bytes = Denoiser(config).history_bytes();
   config.height *= 2;
-  return static_cast<double>(Denoiser(config).history_bytes() - bytes) / pixels;
+  const std::size_t of_twice = Denoiser(config).history_bytes();
+  EXPECT_LE(2 * bytes - of_twice, kMostImages * 64) << "a cache line before each image, no more";
+  return static_cast<double>(of_twice - bytes) / pixels;
 }
 
 TEST(HistoryFormat, IsOfFloatsUnlessOtherwiseAskedFor) {
