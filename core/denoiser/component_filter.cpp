@@ -281,7 +281,8 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
     if (component_.kind == ComponentKind::kIndirect &&
         rule.rectification == Rectification::kClampFallback)
       rule.rectification = Rectification::kNone;
-    accumulate(input.frames.now, s.noisy, sources, rule, before, now, debug);
+    accumulate(input.frames.now, s.noisy, sources, rule, before, now,
+               recipe_.svgf_filter ? s.filter.odd : now.data, debug);
     if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
 }
@@ -294,8 +295,8 @@ bool ComponentFilter::shadows_at_rest(const ComponentInput& input) const {
 
 void ComponentFilter::filter(const ComponentInput& input, Scratch& s, Plane& out) {
   ComponentHistory& now = room(s).now;
-  const Signal signal{&now.data, channels_, std::as_const(now).samples(),
-                      std::as_const(s.means)[kSampleVariance],
+  const Signal signal{recipe_.svgf_filter ? &s.filter.odd : &now.data, channels_,
+                      std::as_const(now).samples(), std::as_const(s.means)[kSampleVariance],
                       has_footprint_ ? &s.footprint : nullptr};
   if (recipe_.svgf_filter) {
     const ComponentHistory& moments = now;

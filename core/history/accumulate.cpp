@@ -75,7 +75,7 @@ void record(const AccumulationBlock& block, const HistorySources& sources, Chann
 
 void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
                 const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
-                Channels<float>* debug) {
+                Channels<float>& signal, Channels<float>* debug) {
   const int width = guides.view.width;
   for_each_row(guides.view.height, [&](int y) {
     Choice own;
@@ -83,8 +83,8 @@ void accumulate(const Guides& guides, const Channels<float>& noisy, const Histor
     for (int x = 0; x < width; x += kTapBlock) {
       const int count = std::min(kTapBlock, width - x);
       const AccumulationLanes lanes = choose(sources, rule.rectification, x, y, count, own);
-      const AccumulationBlock block{guides, noisy, before, rule,    lanes, x,
-                                    y,      count, now,    samples, weight};
+      const AccumulationBlock block{guides, noisy, before, rule,   lanes,   x,
+                                    y,      count, now,    signal, samples, weight};
       accumulate_block(block);
       if (debug != nullptr) record(block, sources, *debug);
     }

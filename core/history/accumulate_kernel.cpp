@@ -199,7 +199,7 @@ HOLDFAST_INLINE void accumulate_kernel_body(const AccumulationBlock& a) {
     samples[i] = min_of(1.0f + trust[i] * n[i], most);
   }
   for (int c = 0; c < channels; ++c)
-    blend_channel(a, a.noisy[c].row(a.y) + a.x, history[c], a.now.data[c].row(a.y) + a.x);
+    blend_channel(a, a.noisy[c].row(a.y) + a.x, history[c], a.signal[c].row(a.y) + a.x);
   if (a.now.has_moments()) blend_moments(a, lanes);
 }
 

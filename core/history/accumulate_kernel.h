@@ -24,6 +24,7 @@ struct AccumulationBlock {
   const AccumulationLanes& lanes;
   int x, y, count;  ///< 1..kTapBlock
   ComponentHistory& now;
+  Channels<float>& signal;
   float* history_samples;  ///< kTapBlock: written, N of the formula
   float* history_weight;   ///< kTapBlock: written, 1 - a'
 };

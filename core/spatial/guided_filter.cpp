@@ -102,6 +102,16 @@ HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBl
   add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
 }
 
+/// The luminance of what has been written, where it is wanted.
+HOLDFAST_INLINE void write_luminance(const FilterRow& a, int x0, int count) {
+  if (!a.luminance_out) return;
+  const float* __restrict r = a.out[0].row(a.y) + x0;
+  const float* __restrict g = a.out[1].row(a.y) + x0;
+  const float* __restrict b = a.out[2].row(a.y) + x0;
+  float* __restrict out = a.luminance_out.row(a.y) + x0;
+  for (int i = 0; i < count; ++i) out[i] = luminance(r[i], g[i], b[i]);
+}
+
 /// What the sums come to; pixels without surface, or weights, stay as they are. `kExact`: by a
 /// division, so that what has no other tap stays as it is to the last bit.
 template <int C, Spread kSpread, bool kExact>
@@ -120,6 +130,7 @@ HOLDFAST_INLINE void write_block(const FilterRow& a, int x0, int count, const Fi
       out[i] = inverse[i] > 0.0f ? mean : in[i];
     }
   }
+  if constexpr (C == 3 && kSpread == Spread::kVariance && kExact) write_luminance(a, x0, count);
   const float* __restrict in = a.spread_in.row(a.y) + x0;
   float* __restrict out = a.spread_out.row(a.y) + x0;
   for (int i = 0; i < count; ++i) {

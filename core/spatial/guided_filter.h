@@ -54,6 +54,9 @@ struct FilterRow {
   /// Edge-stopping luminance, and per pixel 1 / luminance_sigma. Both or neither.
   ChannelView<const float> luminance;
   ChannelView<const float> inverse_luminance_sigma;
+  /// Receives the luminance of what is written. Optional, of three channels with luminance and
+  /// kVariance.
+  ChannelView<float> luminance_out;
   /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
   ChannelView<const float> footprint[3];
   /// Where the weights by geometry are kept from pass to pass. Without luminance, passes of 1, 2,

@@ -10,7 +10,8 @@ namespace holdfast {
 /// then `levels` of a 5x5 a-trous filter, each stopped by the luminance in terms of the variance
 /// after a 3x3 Gaussian. Our difference: plane distances instead of depth gradients.
 ///   reads guides, signal (`samples` are frames of history), moments: mean and mean square of the
-///   luminance | writes `out`, and the first level into `feedback` | halo 2 (2^levels - 1) + levels
+///   luminance | writes `out`, and the first level into `feedback`; `values` of the signal are
+///   neither, and may be the scratch's `odd` | halo 2 (2^levels - 1) + levels
 ///   px
 void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const float> moment_1,
                  ChannelView<const float> moment_2, int levels, FilterScratch& scratch,
