@@ -190,7 +190,7 @@ void ComponentFilter::measure(const ComponentInput& input, const ShadowTracer* t
                               : kLuminance]};
   s.measured_activity.measure(input.frames.now, varying, 1 + kStatisticsStep, 0.0f);
   window_means(input.frames.now, measured, has_footprint_ ? kMeasured : kField, kStatisticsStep,
-               s.window, s.means, 0, &s.measured_activity);
+               s.window, s.means, &s.measured_activity);
   finish_statistics(s);
 }
 
@@ -201,7 +201,7 @@ void ComponentFilter::measure_young(const ComponentInput& input, Scratch& s) con
                                     1 + kStatisticsStep);
   if (s.measured_activity.active_share() == 0) return;
   measure_luminance(s);
-  window_means(input.frames.now, s.measured, kField, kStatisticsStep, s.window, s.means, 0,
+  window_means(input.frames.now, s.measured, kField, kStatisticsStep, s.window, s.means,
                &s.measured_activity);
   finish_statistics(s);
 }

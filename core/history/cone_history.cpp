@@ -38,14 +38,13 @@ const Taps* choose_taps(const SurfaceHistory* surface, const EffectHistory* effe
 
 /// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
 /// neighbours by its samples.
-void spread_out(const Guides& guides, ConeRoom& room, WindowScratch& window) {
+void spread_out(const Guides& guides, ConeRoom& room, TapWeights& weights) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = pass_channels(room.kept.count());
-  pass.kept = &window.weights;
-  pass.spread_in = window.all_ones();
-  pass.spread_out = window.spread[0];
+  pass.kept = &weights;
+  pass.spread = Spread::kNone;
   for (int first = 0; first < room.kept.count(); first += pass.channels) {
     for (int c = 0; c < pass.channels; ++c) {
       pass.in[c] = std::as_const(room.updated)[first + c];
@@ -102,7 +101,7 @@ void ConeHistory::correct(const FramePair& frames, const SurfaceHistory* surface
       }
     }
   });
-  spread_out(now, room, window);
+  spread_out(now, room, window.weights);
   kept_.keep(room.kept, key, [&](Channels<float>& images, int y) {
     sums_to_means(rows_at(0, y, now.view.width, images));
   });

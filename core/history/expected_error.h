@@ -57,7 +57,7 @@ struct BlendScratch {
 /// filter that follows averages noise away, and bias not. Without a candidate, out = noisy and N =
 /// 1, so that a history that fits nowhere leaves exactly the spatial filter; nor is there one in
 /// the shadow of an object that has just appeared.
-/// With a `footprint` (see window_means) the window follows it; null: a square.
+/// With a `footprint` (see counted_window_means) the window follows it; null: a square.
 ///   reads noisy, `before`, `sample_variance` | writes `now`, `debug` (may be null) | halo of the
 ///   window
 void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,

@@ -50,7 +50,6 @@ GradientScratch::GradientScratch(int frame_width, int frame_height, Memory memor
   guides = Guides(width, height, memory);
   samples = Channels<float>(width, height, kChannels, memory);
   filtered = Channels<float>(width, height, kChannels, memory);
-  spread = Channels<float>(width, height, 2, memory);
   antilag = Channels<float>(width, height, 1, memory);
 }
 
@@ -83,9 +82,7 @@ ChannelView<const float> antilag_of_gradients(const Guides& now, int levels, Gra
   pass.guides = &s.guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = kChannels;
-  pass.spread = Spread::kVariance;
-  pass.spread_in = std::as_const(s.spread)[0];
-  pass.spread_out = s.spread[1];
+  pass.spread = Spread::kNone;
   for (int level = 0; level < levels; ++level) {
     pass.step = 1 << level;
     for (int c = 0; c < kChannels; ++c) {

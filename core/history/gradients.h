@@ -13,7 +13,6 @@ struct GradientScratch {
   Channels<float> samples;   ///< of one component: delta = now - then, Delta = max(now, then), and
                              ///< 1 where that is a sample
   Channels<float> filtered;  ///< 3: the same between passes
-  Channels<float> spread;    ///< 2: not used, but written by the filter
   Channels<float> antilag;   ///< 1: the result
 
   GradientScratch() = default;
@@ -21,7 +20,7 @@ struct GradientScratch {
   GradientScratch(int frame_width, int frame_height, Memory memory = Memory::kOwned);
   static void each_image(auto& s, auto&& visit) {
     Guides::each_image(s.guides, visit);
-    for (auto* images : {&s.samples, &s.filtered, &s.spread, &s.antilag}) visit(*images);
+    for (auto* images : {&s.samples, &s.filtered, &s.antilag}) visit(*images);
   }
 };
 

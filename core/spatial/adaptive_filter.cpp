@@ -48,11 +48,9 @@ void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& z
   pass.channels = 1;
   pass.activity = &s.activity;
   pass.activity_zone = zones.of_first_level();
-  pass.spread = Spread::kVariance;
+  pass.spread = Spread::kNone;
   pass.in[0] = signal.samples;
   pass.out[0] = s.guide[2];
-  pass.spread_in = signal.samples;
-  pass.spread_out = s.spread[1];  // not used
   const Channels<float>& footprint = *signal.footprint;
   for_each_row(guides.view.height, [&](int y) {
     pass_row(pass, y);

@@ -24,9 +24,10 @@ struct TapRow {
   float normal_power;
 };
 
-/// What a tap of a pass reads: geometry where its weights are found, luminance where that stops it.
+/// What a tap of a pass reads besides signals: geometry where its weights are found, luminance
+/// where that stops it.
 struct TapReads {
-  bool geometry, luminance, signals;
+  bool geometry, luminance, spread;
 };
 
 /// Where taps outside the image read zeros, which weigh nothing.
@@ -82,7 +83,7 @@ HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
     t.normal_power = a.weights.normal_power;
   }
   if constexpr (kReads.luminance) t.luminance = a.luminance.row(qy) + x0;
-  if constexpr (kReads.signals) t.spread = a.spread_in.row(qy) + x0;
+  if constexpr (kReads.spread) t.spread = a.spread_in.row(qy) + x0;
   for (int c = 0; c < C; ++c) t.in[c] = a.in[c].row(qy) + x0;
   return t;
 }
@@ -99,7 +100,7 @@ HOLDFAST_INLINE TapRow padded_tap_row(const FilterRow& a, int x0, int count, int
       *row = pad_row<kReach>(*row, width, x0, count, reach, *room++);
   if constexpr (kReads.luminance)
     t.luminance = pad_row<kReach>(t.luminance, width, x0, count, reach, *room++);
-  if constexpr (kReads.signals)
+  if constexpr (kReads.spread)
     t.spread = pad_row<kReach>(t.spread, width, x0, count, reach, *room++);
   for (int c = 0; c < C; ++c) t.in[c] = pad_row<kReach>(t.in[c], width, x0, count, reach, *room++);
   return t;
@@ -191,7 +192,8 @@ template <int C, Spread kSpread>
 HOLDFAST_INLINE void add_weighted(const TapRow& t, int q, float g, FilterSums<C>& s) {
   const float w = kSpread == Spread::kSamples ? g * t.spread[q] : g;
   s.weight += w;
-  s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
+  if constexpr (kSpread != Spread::kNone)
+    s.spread += kSpread == Spread::kSamples ? g * w : w * w * t.spread[q];
   s.value[0] += w * t.in[0][q];
   if constexpr (C > 1) s.value[1] += w * t.in[1][q];
   if constexpr (C > 2) s.value[2] += w * t.in[2][q];

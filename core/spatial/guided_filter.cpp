@@ -65,7 +65,7 @@ HOLDFAST_INLINE void add_taps(const RowPass& pass, const TapRow& t, int count, i
 template <int C, bool kLuminance, Spread kSpread, bool kFootprint, Border kBorder>
 HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
-  constexpr TapReads kReads{true, kLuminance, true};
+  constexpr TapReads kReads{true, kLuminance, kSpread != Spread::kNone};
   load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(a.step), x0, a.y,
                       count, b);
   for (float* normal : {b.nx, b.ny, b.nz})
@@ -98,7 +98,7 @@ template <int C, Spread kSpread, bool kFootprint, Border kBorder>
 HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBlock& b) {
   const bool copied = kBorder == Border::kCopied && !is_inside(a, x0, count);
   PaddedKeptRows padded;
-  const KeptRows rows = kept_rows<C>(a, x0, count, copied ? &padded : nullptr);
+  const KeptRows rows = kept_rows<C, kSpread>(a, x0, count, copied ? &padded : nullptr);
   add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
 }
 
@@ -131,6 +131,7 @@ HOLDFAST_INLINE void write_block(const FilterRow& a, int x0, int count, const Fi
     }
   }
   if constexpr (C == 3 && kSpread == Spread::kVariance && kExact) write_luminance(a, x0, count);
+  if constexpr (kSpread == Spread::kNone) return;
   const float* __restrict in = a.spread_in.row(a.y) + x0;
   float* __restrict out = a.spread_out.row(a.y) + x0;
   for (int i = 0; i < count; ++i) {
@@ -157,13 +158,14 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
   write_block<C, kSpread, kWeights == Weights::kLuminance>(a, x0, count, b);
 }
 
-template <int C>
+template <int C, Spread kSpread>
 HOLDFAST_INLINE void copy_block(const FilterRow& a, int x0, int count) {
   for (int c = 0; c < C; ++c) {
     const float* __restrict in = a.in[c].row(a.y) + x0;
     float* __restrict out = a.out[c].row(a.y) + x0;
     for (int i = 0; i < count; ++i) out[i] = in[i];
   }
+  if constexpr (kSpread == Spread::kNone) return;
   const float* __restrict in = a.spread_in.row(a.y) + x0;
   float* __restrict out = a.spread_out.row(a.y) + x0;
   for (int i = 0; i < count; ++i) out[i] = in[i];
@@ -202,7 +204,7 @@ HOLDFAST_INLINE void filter_blocks(const RowPass& pass) {
     if (active)
       filter_block<C, kWeights, kSpread, kFootprint, kBorder>(pass, x0, end - x0, block);
     else
-      copy_block<C>(a, x0, end - x0);
+      copy_block<C, kSpread>(a, x0, end - x0);
     x0 = end;
   }
 }
@@ -217,28 +219,31 @@ HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
 
 // The combinations that the pipeline uses.
 HOLDFAST_INLINE void mean1_body(const RowPass& a) {
-  filter_row_body<1, Weights::kKept, Spread::kVariance, false>(a);
+  filter_row_body<1, Weights::kKept, Spread::kNone, false>(a);
 }
 HOLDFAST_INLINE void mean2_body(const RowPass& a) {
+  filter_row_body<2, Weights::kKept, Spread::kNone, false>(a);
+}
+HOLDFAST_INLINE void spread_mean2_body(const RowPass& a) {
   filter_row_body<2, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void footprint_mean2_body(const RowPass& a) {
   filter_row_body<2, Weights::kKept, Spread::kVariance, true>(a);
 }
 HOLDFAST_INLINE void mean3_body(const RowPass& a) {
-  filter_row_body<3, Weights::kGeometry, Spread::kVariance, false>(a);
+  filter_row_body<3, Weights::kGeometry, Spread::kNone, false>(a);
 }
-HOLDFAST_INLINE void mean4_body(const RowPass& a) {
+HOLDFAST_INLINE void spread_mean4_body(const RowPass& a) {
   filter_row_body<4, Weights::kKept, Spread::kVariance, false>(a);
 }
 HOLDFAST_INLINE void footprint_mean4_body(const RowPass& a) {
   filter_row_body<4, Weights::kKept, Spread::kVariance, true>(a);
 }
 HOLDFAST_INLINE void mean7_body(const RowPass& a) {
-  filter_row_body<7, Weights::kKept, Spread::kVariance, false>(a);
+  filter_row_body<7, Weights::kKept, Spread::kNone, false>(a);
 }
 HOLDFAST_INLINE void mean8_body(const RowPass& a) {
-  filter_row_body<8, Weights::kKept, Spread::kVariance, false>(a);
+  filter_row_body<8, Weights::kKept, Spread::kNone, false>(a);
 }
 HOLDFAST_INLINE void weighted_mean1_body(const RowPass& a) {
   filter_row_body<1, Weights::kKept, Spread::kSamples, false>(a);
@@ -280,9 +285,10 @@ void provide_weights(const FilterRow& a) noexcept {
 
 HOLDFAST_KERNEL(mean1, RowPass)
 HOLDFAST_KERNEL(mean2, RowPass)
+HOLDFAST_KERNEL(spread_mean2, RowPass)
 HOLDFAST_KERNEL(footprint_mean2, RowPass)
 HOLDFAST_KERNEL(mean3, RowPass)
-HOLDFAST_KERNEL(mean4, RowPass)
+HOLDFAST_KERNEL(spread_mean4, RowPass)
 HOLDFAST_KERNEL(footprint_mean4, RowPass)
 HOLDFAST_KERNEL(mean7, RowPass)
 HOLDFAST_KERNEL(mean8, RowPass)
@@ -312,14 +318,16 @@ void filter_row(const FilterRow& row) noexcept {
   }
   if (row.spread == Spread::kSamples)
     return row.footprint[0] ? footprint_mean1(pass) : weighted_mean1(pass);
-  switch (row.channels) {
-    case 1: return mean1(pass);
-    case 2: return row.footprint[0] ? footprint_mean2(pass) : mean2(pass);
-    case 3: return mean3(pass);
-    case 4: return row.footprint[0] ? footprint_mean4(pass) : mean4(pass);
-    case 7: return mean7(pass);
-    default: assert(row.channels == 8); return mean8(pass);
-  }
+  if (row.spread == Spread::kNone) switch (row.channels) {
+      case 1: return mean1(pass);
+      case 2: return mean2(pass);
+      case 3: return mean3(pass);
+      case 7: return mean7(pass);
+      default: assert(row.channels == 8); return mean8(pass);
+    }
+  if (row.channels == 2) return row.footprint[0] ? footprint_mean2(pass) : spread_mean2(pass);
+  assert(row.channels == 4);
+  return row.footprint[0] ? footprint_mean4(pass) : spread_mean4(pass);
 }
 
 void filter_image(const FilterRow& row) {

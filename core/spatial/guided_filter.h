@@ -34,6 +34,7 @@ struct FilterWeights {
 /// What the spread channel of a pass holds.
 enum class Spread {
   kVariance,  ///< variance v: out = sum g in / sum g,  v' = sum g^2 v / (sum g)^2 (SVGF eq. 5)
+  kNone,      ///< there is none: out as of kVariance
   kSamples,   ///< number of equal samples N behind each pixel, > 0, which also weighs it:
               ///< out = sum g N in / sum g N,  N' = (sum g N)^2 / sum g^2 N
 };
@@ -69,9 +70,9 @@ struct FilterRow {
 
 /// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
 /// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4
-/// with kVariance (with or without footprint), or of 1, 7 or 8 channels with kVariance, or 3
-/// channels at any step; with luminance, 1 or 3 channels with either spread, or with kSamples and
-/// footprint. Asserts that the combination is one of these.
+/// with kVariance (with or without footprint), or of 1, 2, 7 or 8 channels with kNone, or 3
+/// channels with kNone at any step and size; with luminance, 1 or 3 channels with either spread, or
+/// with kSamples and footprint. Asserts that the combination is one of these.
 void filter_row(const FilterRow& row) noexcept;
 
 /// Runs `pass` at row y.

@@ -55,9 +55,9 @@ struct PaddedKeptRows {
   PaddedRows<TapWeights::kSteps> above, own, below;
 };
 
-template <int C>
+template <int C, Spread kSpread>
 HOLDFAST_INLINE KeptRows kept_rows(const FilterRow& a, int x0, int count, PaddedKeptRows* padded) {
-  constexpr TapReads kReads{false, false, true};
+  constexpr TapReads kReads{false, false, kSpread != Spread::kNone};
   // In place of a row outside the image, where taps weigh nothing, the pixel's own.
   const int above = a.y >= a.step ? a.y - a.step : a.y;
   const int below = a.y + a.step < a.guides->view.height ? a.y + a.step : a.y;

@@ -13,32 +13,57 @@ WindowScratch::WindowScratch(int width, int height, Memory memory)
   std::fill_n(ones[0].data, width, 1.0f);
 }
 
-ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
-                                      int second_step, WindowScratch& scratch, Channels<float>& out,
-                                      int first_out, const ActivityMap* activity,
-                                      const Channels<float>* footprint) {
+namespace {
+
+FilterRow first_pass(const Guides& guides, const Channels<float>& in, int count,
+                     const ActivityMap* activity, WindowScratch& scratch) {
   FilterRow pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = count;
   pass.kept = &scratch.weights;
   pass.activity = activity;
-  if (footprint != nullptr)
-    for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];
-  pass.spread = Spread::kVariance;
   for (int c = 0; c < count; ++c) {
     pass.in[c] = in[c];
     pass.out[c] = scratch.between[c];
   }
+  return pass;
+}
+
+FilterRow second_pass(const FilterRow& first, int step, const WindowScratch& scratch,
+                      Channels<float>& out, int first_out) {
+  FilterRow pass = first;
+  pass.step = step;
+  for (int c = 0; c < pass.channels; ++c) {
+    pass.in[c] = scratch.between[c];
+    pass.out[c] = out[first_out + c];
+  }
+  return pass;
+}
+
+}  // namespace
+
+void window_means(const Guides& guides, const Channels<float>& in, int count, int second_step,
+                  WindowScratch& scratch, Channels<float>& out, const ActivityMap* activity) {
+  FilterRow pass = first_pass(guides, in, count, activity, scratch);
+  pass.spread = Spread::kNone;
+  filter_image(pass);
+  filter_image(second_pass(pass, second_step, scratch, out, 0));
+}
+
+ChannelView<const float> counted_window_means(const Guides& guides, const Channels<float>& in,
+                                              int count, int second_step, WindowScratch& scratch,
+                                              Channels<float>& out, int first_out,
+                                              const ActivityMap* activity,
+                                              const Channels<float>* footprint) {
+  FilterRow pass = first_pass(guides, in, count, activity, scratch);
+  if (footprint != nullptr)
+    for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];
+  pass.spread = Spread::kVariance;
   pass.spread_in = scratch.all_ones();
   pass.spread_out = scratch.spread[0];
   filter_image(pass);
-
-  pass.step = second_step;
-  for (int c = 0; c < count; ++c) {
-    pass.in[c] = std::as_const(scratch.between)[c];
-    pass.out[c] = out[first_out + c];
-  }
+  pass = second_pass(pass, second_step, scratch, out, first_out);
   pass.spread_in = std::as_const(scratch.spread)[0];
   pass.spread_out = scratch.spread[1];
   filter_image(pass);

@@ -5,7 +5,7 @@
 
 namespace holdfast {
 
-/// Scratch of `window_means`.
+/// Scratch of windows.
 struct WindowScratch {
   static constexpr int kMostChannels = 7;
   Channels<float> between;  ///< kMostChannels, after the first pass
@@ -26,17 +26,22 @@ struct WindowScratch {
   }
 };
 
-/// Means of the first `count` channels of `in` into those from `first_out` on of `out`, over a
-/// window that stays on the pixel's surface: two passes of 3x3 equal taps, the second at
-/// `second_step`, so that the window is 3 + 2 * second_step pixels wide. Step 3 tiles 9x9 pixels
-/// exactly; step 2 overlaps to 7x7 with larger weights inside. Returns the channel of 1/n, n the
-/// number of equal samples in the window's mean (exact for step 3). Tiles that `activity` lists at
-/// rest copy their input; their 1/n is 1.
-/// With a `footprint` (E, F, G of FilterRow; two or four channels only) taps outside it count less.
+/// Means of the first `count` channels of `in` into those of `out`, over a window that stays on the
+/// pixel's surface: two passes of 3x3 equal taps, the second at `second_step`, so that the window
+/// is 3 + 2 * second_step pixels wide. Step 3 tiles 9x9 pixels exactly; step 2 overlaps to 7x7 with
+/// larger weights inside. Tiles that `activity` lists at rest copy their input. 1, 2 or 7 channels.
 ///   reads guides, `in` | writes `out` | halo 1 + second_step px
-ChannelView<const float> window_means(const Guides& guides, const Channels<float>& in, int count,
-                                      int second_step, WindowScratch& scratch, Channels<float>& out,
-                                      int first_out = 0, const ActivityMap* activity = nullptr,
-                                      const Channels<float>* footprint = nullptr);
+void window_means(const Guides& guides, const Channels<float>& in, int count, int second_step,
+                  WindowScratch& scratch, Channels<float>& out,
+                  const ActivityMap* activity = nullptr);
+
+/// The same of 2 or 4 channels into those from `first_out` on, with the number n of equal samples
+/// in each window's mean (exact for step 3): returns the channel of 1/n, which is 1 in tiles at
+/// rest. With a `footprint` (E, F, G of FilterRow) taps outside it count less.
+ChannelView<const float> counted_window_means(const Guides& guides, const Channels<float>& in,
+                                              int count, int second_step, WindowScratch& scratch,
+                                              Channels<float>& out, int first_out = 0,
+                                              const ActivityMap* activity = nullptr,
+                                              const Channels<float>* footprint = nullptr);
 
 }  // namespace holdfast

@@ -30,7 +30,8 @@ class FilterOracle {
   OraclePixel at(int px, int py) const {
     OraclePixel out{};
     for (int c = 0; c < pass_.channels; ++c) out.values[c] = pass_.in[c].at(px, py);
-    out.spread = pass_.spread_in.at(px, py);
+    const bool has_spread = pass_.spread != Spread::kNone;
+    if (has_spread) out.spread = pass_.spread_in.at(px, py);
     if (!(depth(px, py) > 0)) return out;
     double sums[kMaxFilterChannels] = {}, weights = 0, spreads = 0;
     for (int ky = -pass_.weights.radius; ky <= pass_.weights.radius; ++ky)
@@ -41,7 +42,7 @@ class FilterOracle {
         const double h =
             double(pass_.weights.kernel[std::abs(kx)]) * double(pass_.weights.kernel[std::abs(ky)]);
         const double g = h * std::exp(-exponent(px, py, qx, qy));
-        const double spread = pass_.spread_in.at(qx, qy);
+        const double spread = has_spread ? double{pass_.spread_in.at(qx, qy)} : 0.0;
         const bool by_samples = pass_.spread == Spread::kSamples;
         const double weight = by_samples ? g * spread : g;
         for (int c = 0; c < pass_.channels; ++c) sums[c] += weight * double(pass_.in[c].at(qx, qy));

@@ -21,7 +21,9 @@ struct Window {
     test::Random random(31);
     for (int c = 0; c < 2; ++c) test::fill_random(in[c], random, 0, 1);
   }
-  ChannelView<const float> run(int step) { return window_means(guides, in, 2, step, scratch, out); }
+  ChannelView<const float> run(int step) {
+    return counted_window_means(guides, in, 2, step, scratch, out);
+  }
 };
 
 TEST(WindowMeans, OfStepThreeAreMeansOfEightyOneEqualSamples) {
@@ -63,10 +65,10 @@ TEST(WindowMeans, CountOnlyTheSamplesInsideTheImage) {
 
 TEST(WindowMeans, OfASinglePixelAreThePixel) {
   const Guides guides = test::wall(test::perspective_camera(1, 1), 1, 1);
-  Channels<float> in(1, 1, 1), out(1, 1, 1);
+  Channels<float> in(1, 1, 2), out(1, 1, 2);
   in[0].at(0, 0) = 0.3f;
   WindowScratch scratch(1, 1);
-  const auto inverse_n = window_means(guides, in, 1, 3, scratch, out);
+  const auto inverse_n = counted_window_means(guides, in, 2, 3, scratch, out);
   EXPECT_FLOAT_EQ(out[0].at(0, 0), 0.3f);
   EXPECT_FLOAT_EQ(inverse_n.at(0, 0), 1.0f);
 }
@@ -94,12 +96,25 @@ TEST(WindowMeans, GoToTheChannelsFromTheFirstOneOnAndToNoOthers) {
   w.run(2);
   Channels<float> wide(kWidth, kHeight, 5);
   for (int c = 0; c < 5; ++c) test::fill(wide[c], -7.0f);
-  window_means(w.guides, w.in, 2, 2, w.scratch, wide, 2);
+  counted_window_means(w.guides, w.in, 2, 2, w.scratch, wide, 2);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       for (const int c : {0, 1, 4}) ASSERT_EQ(wide[c].at(x, y), -7.0f) << c;
       for (const int c : {0, 1}) ASSERT_EQ(wide[2 + c].at(x, y), w.out[c].at(x, y)) << c;
     }
+}
+
+TEST(WindowMeans, AreTheSameWithoutTheirCounts) {
+  Window w;
+  for (const int step : {2, 3}) {
+    w.run(step);
+    Channels<float> alone(kWidth, kHeight, 2);
+    window_means(w.guides, w.in, 2, step, w.scratch, alone);
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        for (const int c : {0, 1})
+          ASSERT_EQ(alone[c].at(x, y), w.out[c].at(x, y)) << x << ", " << y << ", step " << step;
+  }
 }
 
 /// Four channels on the same wall, with a footprint of precision E, F, G everywhere.
@@ -116,7 +131,7 @@ struct FootprintWindow {
     test::fill(footprint[2], g);
   }
   ChannelView<const float> run(const Channels<float>* within) {
-    return window_means(guides, in, 4, 2, scratch, out, 0, nullptr, within);
+    return counted_window_means(guides, in, 4, 2, scratch, out, 0, nullptr, within);
   }
 };
 
