@@ -20,16 +20,20 @@ struct TileRanges {
   float *low_out, *high_out;
 };
 
+constexpr int kTilesAtOnce = 16;
+constexpr int kPiece = kTilesAtOnce * ActivityMap::kTileWidth;  // pixels
+
+/// Ranges of the columns of `count` pixels from x0 on.
 HOLDFAST_INLINE void widen(const TileRanges& a, int x0, int count, float* __restrict low,
                            float* __restrict high) {
   for (int y = a.first_y; y < a.last_y; ++y) {
-    const float* where = a.where.row(y) + x0;
-    const float* value = a.signal.row(y) + x0;
+    const float* __restrict where = a.where.row(y) + x0;
+    const float* __restrict value = a.signal.row(y) + x0;
     for (int i = 0; i < count; ++i) {
-      const float least = where[i] > 0.0f ? value[i] : low[i];
-      const float most = where[i] > 0.0f ? value[i] : high[i];
-      low[i] = min_of(least, low[i]);
-      high[i] = max_of(most, high[i]);
+      const float there = where[i], given = value[i], least = low[i], most = high[i];
+      const float lower = given < least ? given : least, higher = given > most ? given : most;
+      low[i] = there > 0.0f ? lower : least;
+      high[i] = there > 0.0f ? higher : most;
     }
   }
 }
@@ -37,21 +41,23 @@ HOLDFAST_INLINE void widen(const TileRanges& a, int x0, int count, float* __rest
 HOLDFAST_INLINE void tile_ranges_body(const TileRanges& a) {
   constexpr int kTile = ActivityMap::kTileWidth;
   const int width = a.signal.width;
-  for (int x0 = 0, column = 0; x0 < width; x0 += kTile, ++column) {
-    float low[kTile], high[kTile];
-    for (int i = 0; i < kTile; ++i) low[i] = a.low;
-    for (int i = 0; i < kTile; ++i) high[i] = a.high;
-    if (x0 + kTile <= width)
-      widen(a, x0, kTile, low, high);
-    else
-      widen(a, x0, width - x0, low, high);
-    for (int half = kTile / 2; half > 0; half /= 2)
-      for (int i = 0; i < half; ++i) {
-        low[i] = min_of(low[i], low[i + half]);
-        high[i] = max_of(high[i], high[i + half]);
-      }
-    a.low_out[column] = low[0];
-    a.high_out[column] = high[0];
+  for (int x0 = 0; x0 < width; x0 += kPiece) {
+    const int count = min_of(kPiece, width - x0), tiles = (count + kTile - 1) / kTile;
+    float low[kPiece], high[kPiece];
+    for (int i = 0; i < tiles * kTile; ++i) low[i] = a.low;
+    for (int i = 0; i < tiles * kTile; ++i) high[i] = a.high;
+    widen(a, x0, count, low, high);
+    // Neighbours are joined until one value a tile is left.
+    float low_of[kPiece / 2], high_of[kPiece / 2];
+    for (int left = tiles * kTile / 2; left >= tiles; left /= 2) {
+      for (int i = 0; i < left; ++i) low_of[i] = min_of(low[2 * i], low[2 * i + 1]);
+      for (int i = 0; i < left; ++i) high_of[i] = max_of(high[2 * i], high[2 * i + 1]);
+      for (int i = 0; i < left; ++i) low[i] = low_of[i];
+      for (int i = 0; i < left; ++i) high[i] = high_of[i];
+    }
+    float *low_out = a.low_out + x0 / kTile, *high_out = a.high_out + x0 / kTile;
+    for (int i = 0; i < tiles; ++i) low_out[i] = low[i];
+    for (int i = 0; i < tiles; ++i) high_out[i] = high[i];
   }
 }
 
