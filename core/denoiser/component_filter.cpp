@@ -26,25 +26,6 @@ constexpr float kVisibilityVarianceFloor = 1e-3f;
 constexpr float kRelativeVarianceFloor = 1e-4f;
 constexpr float kVarianceFloor = 1e-30f;
 
-// How narrow the window of the differences from history is, as a multiple of the precision of the
-// filter's footprint. That of reflections must find what the filter's would blur; that of shadows
-// leaves out what other penumbrae do. Ours, tuned on glossy-floor, and on fence and cylinder.
-constexpr float kVisibilityWindowPrecision = 0.15f;
-constexpr float kRadianceWindowPrecision = 3.0f;
-
-/// The footprint with `precision` times its precision.
-const Channels<float>& scaled_footprint(int height, float precision, Scratch& s) {
-  Channels<float>& out = s.filter.footprint;  // free until the filter runs
-  for_each_row(height, [&](int y) {
-    for (int c = 0; c < 3; ++c) {
-      const float* in = std::as_const(s.footprint)[c].row(y);
-      float* to = out[c].row(y);
-      for (int x = 0; x < out.width(); ++x) to[x] = precision * in[x];
-    }
-  });
-  return out;
-}
-
 /// Samples corrected by cones may be negative, and so may what little is left of few.
 void keep_positive(Plane& radiance) {
   for_each_row(radiance.height(), [&](int y) {
@@ -256,21 +237,17 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
   Channels<float>* debug = s.debug ? &s.debug : nullptr;
   changed_share_ = 0;
   if (recipe_.blending == Blending::kExpectedError && sources.surface != nullptr) {
-    const Channels<float>* window = nullptr;
-    if (has_footprint_)
-      window = &scaled_footprint(
-          input.frames.now.view.height,
-          channels_ == 1 ? kVisibilityWindowPrecision : kRadianceWindowPrecision, s);
+    const Channels<float>* footprint = has_footprint_ ? &s.footprint : nullptr;
     if (channels_ == 1) {
       ExpectedErrorRule rule = recipe_.visibility_blend;
       rule.change.noticed &= shadows_at_rest(input);
       blend_by_expected_error(input.frames.now, s.noisy, sources,
-                              std::as_const(s.means)[kSampleVariance], window, rule, before,
+                              std::as_const(s.means)[kSampleVariance], footprint, rule, before,
                               s.blend, s.window, now, debug);
       changed_share_ = s.blend.change.share();
     } else {
       blend_radiance(
-          input.frames.now, s.noisy, sources, window,
+          input.frames.now, s.noisy, sources, footprint,
           component_.kind == ComponentKind::kGlossy ? recipe_.glossy_blend : recipe_.indirect_blend,
           input.frames.scene.at_rest(), before, s.radiance_blend, s.window, now, debug);
       changed_share_ = s.radiance_blend.change[0].share();

@@ -124,8 +124,9 @@ void blend_by_expected_error(const Guides& guides, const Channels<float>& noisy,
     s.change.clear();
   }
   s.activity.measure(guides, differences, 1 + rule.window_step, 0.0f, true);
-  const auto spread = counted_window_means(guides, s.differences, 2, rule.window_step, window,
-                                           s.bias, 0, &s.activity, footprint);
+  const auto spread =
+      counted_window_means(guides, s.differences, 2, rule.window_step, window, s.bias, 0,
+                           &s.activity, footprint, rule.window_precision);
   const Blend blend{noisy, sources, sample_variance, spread, rule, s, now, debug};
   for_each_row(guides.view.height, [&](int y) { blend.row(y); });
 }

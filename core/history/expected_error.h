@@ -8,7 +8,9 @@ namespace holdfast {
 
 /// Constants of the blend by expected error. All ours; tuned on fence and cylinder at two speeds.
 struct ExpectedErrorRule {
-  int window_step = 3;           ///< window of the bias estimate: 3 + 2 step pixels wide
+  int window_step = 3;             ///< window of the bias estimate: 3 + 2 step pixels wide
+  float window_precision = 0.15f;  ///< of its footprint, in that of the effect's: it leaves out
+                                   ///< what other penumbrae do; tuned on fence and cylinder
   float noise_threshold = 0.2f;  ///< share of a window mean's variance that is not taken for bias
   float slow_threshold = 3.0f;   ///< added where a shadow moves slowly over its surface ...
   float slow_move = 0.05f;       ///< ... falling by 1/e with this much of a penumbra a frame

@@ -156,8 +156,9 @@ void blend_radiance(const Guides& guides, const Channels<float>& noisy,
   pass.find_activity(guides);
   ChannelView<const float> spread;
   for (int k = 0; k < pass.candidates(); ++k)
-    spread = counted_window_means(guides, s.differences[k], kStep, rule.window_step, window,
-                                  s.means, kStep * k, &s.activity, footprint);
+    spread =
+        counted_window_means(guides, s.differences[k], kStep, rule.window_step, window, s.means,
+                             kStep * k, &s.activity, footprint, rule.window_precision);
   for_each_row(guides.view.height, [&](int y) { pass.blend_row(y, spread.row(y)); });
 }
 

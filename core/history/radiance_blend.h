@@ -9,11 +9,13 @@ namespace holdfast {
 /// Constants of the blend of radiance by expected error. Thresholds are in variances of the
 /// difference that they are held against. All ours; tuned on occluder, glossy-floor and static.
 struct RadianceBlendRule {
-  bool effect_substitutes = false;       ///< the effect's history stands in only where the surface
-                                         ///< has none, rather than beside it
-  int window_step = 2;                   ///< window of a difference: 3 + 2 step pixels wide
-  float sudden_threshold = 2.0f;         ///< of this frame's difference, taken for noise below
-  float noise_threshold = 1.0f;          ///< of the lasting difference, likewise
+  bool effect_substitutes = false;  ///< the effect's history stands in only where the surface
+                                    ///< has none, rather than beside it
+  int window_step = 2;              ///< window of a difference: 3 + 2 step pixels wide
+  float window_precision = 3.0f;    ///< of its footprint, in that of the effect's: it must find
+                                    ///< what the filter's would blur
+  float sudden_threshold = 2.0f;    ///< of this frame's difference, taken for noise below
+  float noise_threshold = 1.0f;     ///< of the lasting difference, likewise
   float rest_sudden_threshold = 300.0f;  ///< the same where nothing in the scene moves: there is
   float rest_threshold = 300.0f;         ///< little reason to expect bias
   float residual_beta = 0.2f;            ///< weight of this frame in the lasting difference, 0..1

@@ -16,19 +16,6 @@
 namespace holdfast::oracle {
 namespace {
 
-// How narrow the window of the differences from history is, as a multiple of the precision of the
-// filter's footprint.
-constexpr double kVisibilityWindow = double{0.15f};
-constexpr double kRadianceWindow = 3;
-
-Image scaled(const Image& image, double factor) {
-  Image out = image;
-  for_each_pixel(out.width(), out.height(), [&](int x, int y) {
-    for (int c = 0; c < out.channels(); ++c) out.at(x, y, c) *= factor;
-  });
-  return out;
-}
-
 Image image_of(const Plane& plane) {
   Image out(plane.width(), plane.height(), plane.channels());
   for_each_pixel(out.width(), out.height(), [&](int x, int y) {
@@ -245,10 +232,7 @@ Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const 
       out.now.residual = Image(view.now.width, view.now.height, 4);
     return out;
   }
-  Image window;
-  if (statistics.footprint)
-    window = scaled(statistics.footprint, visibility_ ? kVisibilityWindow : kRadianceWindow);
-  const Image* footprint = window ? &window : nullptr;
+  const Image* footprint = statistics.footprint ? &statistics.footprint : nullptr;
   if (!visibility_)
     return blend_radiance(view.now, noisy, sources, footprint,
                           entry_.component.kind == ComponentKind::kGlossy ? recipe_.glossy_blend

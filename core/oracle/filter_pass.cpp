@@ -21,8 +21,9 @@ double exponent(const Surfaces& s, const Pass& pass, int x, int y, int qx, int q
            pass.inverse_sigma->at(x, y);
   if (pass.footprint != nullptr) {
     const double dx = qx - x, dy = qy - y;
-    sum += pass.footprint->at(x, y, 0) * dx * dx + 2 * pass.footprint->at(x, y, 1) * dx * dy +
-           pass.footprint->at(x, y, 2) * dy * dy;
+    sum += pass.footprint_precision *
+           (pass.footprint->at(x, y, 0) * dx * dx + 2 * pass.footprint->at(x, y, 1) * dx * dy +
+            pass.footprint->at(x, y, 2) * dy * dy);
   }
   return sum;
 }
@@ -70,9 +71,10 @@ Pass kernel_pass(int taps, int step) {
 }
 
 Filtered window_means(const Surfaces& surfaces, const Image& values, int second_step,
-                      const Image* footprint) {
+                      const Image* footprint, double footprint_precision) {
   Pass pass = box_pass(1);
   pass.footprint = footprint;
+  pass.footprint_precision = footprint_precision;
   const Image ones(surfaces.width, surfaces.height, 1, 1.0);
   const Filtered between = filter_pass(surfaces, values, ones, pass);
   pass.step = second_step;

@@ -22,7 +22,8 @@ struct Pass {
   Weighting weighting = Weighting::kEqual;
   const Image* luminance = nullptr;      ///< edge-stopping, with ...
   const Image* inverse_sigma = nullptr;  ///< ... its inverse tolerance; both or neither
-  const Image* footprint = nullptr;      ///< E, F, G, px^-2
+  const Image* footprint = nullptr;      ///< E, F, G, px^-2 ...
+  double footprint_precision = 1;        ///< ... and what multiplies it
 };
 inline constexpr int kMostFilterChannels = 28;
 
@@ -42,6 +43,6 @@ Pass kernel_pass(int taps, int step);
 /// spatial/window.h: means over a window of 3 + 2 second_step pixels that stays on the surface, and
 /// 1/n, n the equal samples in each.
 Filtered window_means(const Surfaces& surfaces, const Image& values, int second_step,
-                      const Image* footprint = nullptr);
+                      const Image* footprint = nullptr, double footprint_precision = 1);
 
 }  // namespace holdfast::oracle

@@ -115,7 +115,8 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
   Candidate candidates[2];
   for (int k = 0; k < count; ++k) {
     candidates[k] = read_candidate(noisy, sources, substitutes, k, before);
-    candidates[k].means = window_means(now, candidates[k].difference, rule.window_step, footprint);
+    candidates[k].means = window_means(now, candidates[k].difference, rule.window_step, footprint,
+                                       double{rule.window_precision});
   }
   std::vector<Changes> changes;  // by candidate; at rest the first one's is that of all
   for (int k = 0; k < count; ++k)

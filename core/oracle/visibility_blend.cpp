@@ -76,7 +76,8 @@ Blended blend_visibility(const Surfaces& now, const Image& noisy, const Sources&
   out.changed_share = changes.share();
   Image spread;
   for (Candidate* candidate : {&surface, &shadow}) {
-    Filtered window = window_means(now, candidate->difference, rule.window_step, footprint);
+    Filtered window = window_means(now, candidate->difference, rule.window_step, footprint,
+                                   double{rule.window_precision});
     candidate->mean_difference = std::move(window.values);
     spread = std::move(window.spread);
     for_each_pixel(now.width, now.height, [&](int x, int y) {

@@ -60,6 +60,7 @@ struct FilterRow {
   ChannelView<float> luminance_out;
   /// Footprint E, F, G in 1 / px^2: half the inverse covariance of a Gaussian. All or none.
   ChannelView<const float> footprint[3];
+  float footprint_precision = 1.0f;  ///< multiplies it; of passes without luminance
   /// Where the weights by geometry are kept from pass to pass. Without luminance, passes of 1, 2,
   /// 4, 7 and 8 channels need it; others do not look at it.
   TapWeights* kept = nullptr;

@@ -31,12 +31,12 @@ struct PairWeights {
 };
 
 template <bool kFootprint>
-HOLDFAST_INLINE PairWeights pair_weights(const FilterBlock& b, int i, float step,
+HOLDFAST_INLINE PairWeights pair_weights(const FilterBlock& b, int i, float area,
                                          const KeptKernel& kernel) {
   if constexpr (!kFootprint) {
     return {kernel.beside, kernel.beside, kernel.corner, kernel.corner};
   } else {
-    const float bits = weight_bits(0.0f), area = step * step;
+    const float bits = weight_bits(0.0f);
     const float xx = area * b.footprint_xx[i], yy = area * b.footprint_yy[i];
     const float xy = 2.0f * area * b.footprint_xy[i];
     return {kernel.beside * weight_exp(bits, xx), kernel.beside * weight_exp(bits, yy),
@@ -81,10 +81,10 @@ HOLDFAST_INLINE void add_kept_taps(const FilterRow& a, const KeptRows& rows, int
   const TapRow above = rows.above, own = rows.own, below = rows.below;
   const KeptKernel kernel = kept_kernel(a.weights);
   const float own_weight = a.weights.kernel[0] * a.weights.kernel[0];
-  const float distance = static_cast<float>(step);
+  const float area = static_cast<float>(step * step) * a.footprint_precision;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const PairWeights pair = pair_weights<kFootprint>(b, i, distance, kernel);
+    const PairWeights pair = pair_weights<kFootprint>(b, i, area, kernel);
     FilterSums<C> s{};
     add_weighted<C, kSpread>(own, i, own_weight, s);
     add_weighted<C, kSpread>(above, i - step, pair.falling * lower_weight(of_above[i]), s);

@@ -55,10 +55,11 @@ ChannelView<const float> counted_window_means(const Guides& guides, const Channe
                                               int count, int second_step, WindowScratch& scratch,
                                               Channels<float>& out, int first_out,
                                               const ActivityMap* activity,
-                                              const Channels<float>* footprint) {
+                                              const Channels<float>* footprint, float precision) {
   FilterRow pass = first_pass(guides, in, count, activity, scratch);
   if (footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];
+  pass.footprint_precision = precision;
   pass.spread = Spread::kVariance;
   pass.spread_in = scratch.all_ones();
   pass.spread_out = scratch.spread[0];
