@@ -153,7 +153,7 @@ double blended(float alpha, int frames, const std::function<double(double, doubl
         sums[y][x] += double{noisy[0].at(x, y)};
       }
     accumulate(wall, noisy, {&surface, nullptr, {}}, rule, history[(t + 1) % 2], history[t % 2],
-               history[t % 2].data, nullptr);
+               nullptr);
   }
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x)

@@ -75,6 +75,12 @@ void record(const AccumulationBlock& block, const HistorySources& sources, Chann
 
 void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
                 const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
+                Channels<float>* debug) {
+  accumulate(guides, noisy, sources, rule, before, now, now.data, debug);
+}
+
+void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
+                const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
                 Channels<float>& signal, Channels<float>* debug) {
   const int width = guides.view.width;
   for_each_row(guides.view.height, [&](int y) {

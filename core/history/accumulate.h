@@ -26,8 +26,12 @@ struct AccumulationRule {
 /// surface vector; what stands in for the surface the other way round, with full trust. Colours are
 /// clamped in YCoCg. With gradients, trust is multiplied by 1 - lambda, which makes a' = (1 -
 /// lambda) a + lambda (A-SVGF eq. 6).
-/// C goes to the channels of `signal`, which may be those of `now`.
 ///   reads noisy, `before` | writes `now`, `signal`, `debug` (may be null) | halo 1 px
+void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
+                const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
+                Channels<float>* debug);
+
+/// The same with C in the channels of `signal`, in place of those of `now`.
 void accumulate(const Guides& guides, const Channels<float>& noisy, const HistorySources& sources,
                 const AccumulationRule& rule, const ComponentHistory& before, ComponentHistory& now,
                 Channels<float>& signal, Channels<float>* debug);

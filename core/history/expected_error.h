@@ -11,11 +11,11 @@ struct ExpectedErrorRule {
   int window_step = 3;             ///< window of the bias estimate: 3 + 2 step pixels wide
   float window_precision = 0.15f;  ///< of its footprint, in that of the effect's: it leaves out
                                    ///< what other penumbrae do; tuned on fence and cylinder
-  float noise_threshold = 0.2f;  ///< share of a window mean's variance that is not taken for bias
-  float slow_threshold = 3.0f;   ///< added where a shadow moves slowly over its surface ...
-  float slow_move = 0.05f;       ///< ... falling by 1/e with this much of a penumbra a frame
-  float rest_threshold = 20.0f;  ///< added where it does not move at all ...
-  float rest_move = 0.003f;      ///< ... falling by 1/e with this much (rounding, not sliding)
+  float noise_threshold = 0.2f;    ///< share of a window mean's variance that is not taken for bias
+  float slow_threshold = 3.0f;     ///< added where a shadow moves slowly over its surface ...
+  float slow_move = 0.05f;         ///< ... falling by 1/e with this much of a penumbra a frame
+  float rest_threshold = 20.0f;    ///< added where it does not move at all ...
+  float rest_move = 0.003f;        ///< ... falling by 1/e with this much (rounding, not sliding)
   float spatial_samples =
       40;  ///< samples that the spatial filter adds: it averages noise, not bias
   float surface_advantage =

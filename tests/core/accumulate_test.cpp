@@ -18,6 +18,19 @@ TEST(Accumulate, BlendsByAlphaOnceHistoryIsLong) {
   EXPECT_NEAR(h.now.data[0].at(1, 1), 0.2f, 1e-6f);
 }
 
+TEST(Accumulate, SignalMayGoElsewhere) {
+  StillHistory h(3, 2, 1);
+  test::fill(h.noisy[0], 1.0f);
+  test::fill(h.before.data[0], 0.0f);
+  test::fill(h.before.samples(), 50.0f);
+  test::fill(h.now.data[0], 7.0f);
+  Channels<float> signal(3, 2, 1);
+  accumulate(h.guides, h.noisy, h.by_surface(), {.alpha = 0.2f}, h.before, h.now, signal, nullptr);
+  EXPECT_NEAR(signal[0].at(1, 1), 0.2f, 1e-6f);
+  EXPECT_EQ(h.now.data[0].at(1, 1), 7.0f);
+  EXPECT_NEAR(h.now.samples().at(1, 1), 9.0f, 1e-5f) << "which the history keeps all the same";
+}
+
 TEST(Accumulate, YoungHistoryIsAPlainMean) {
   StillHistory h(2, 2, 1);
   accumulate(h.guides, h.noisy, {}, {}, h.before, h.now, nullptr);

@@ -138,7 +138,7 @@ TEST(Accumulate, GradientsTakeAlphaTowardsOneAndShortenHistory) {
   for (int k = 0; k < 3; ++k) lambda[0].at(k, 0) = values[k];
   HistorySources sources = h.by_surface();
   sources.antilag = lambda[0];
-  accumulate(h.guides, h.noisy, sources, {.alpha = 0.2f}, h.before, h.now, h.now.data, nullptr);
+  accumulate(h.guides, h.noisy, sources, {.alpha = 0.2f}, h.before, h.now, nullptr);
   for (int x = 0; x < 7; ++x) {
     const float l = values[x / 3], alpha = (1.0f - l) * 0.2f + l;
     EXPECT_NEAR(h.now.data[0].at(x, 0), alpha, 1e-6f) << x;

@@ -111,7 +111,7 @@ TEST(StageOracle, AnExponentialMeanOfAnyKindAgreesOnEveryInstructionSet) {
               kind == Rectification::kClamp || kind == Rectification::kClampFallback;
           test::on_every_isa_and_threads([&] {
             accumulate(twins.guides, twins.noisy, twins.sources(true, variant), rule, twins.before,
-                       twins.now, twins.now.data, nullptr);
+                       twins.now, nullptr);
             twins.expect_same(expected, by_sigma ? kOfSigma : kBlended, kOfSamples, 0);
           });
         }
