@@ -5,6 +5,7 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include "core/frame/error.h"
+#include "proto/one_poller.h"
 #include "proto/receive_memory.h"
 #include "server/options.h"
 #include "server/server.h"
@@ -28,6 +29,7 @@ sigset_t block_stop_signals() {
 
 int main(int argc, char** argv) {
   holdfast::wire::keep_receive_memory();
+  holdfast::wire::prefer_one_poller();
   holdfast::server::ServerConfig config;
   config.calibrate = true;
   bool only_check = false;

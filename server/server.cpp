@@ -8,6 +8,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include "core/frame/error.h"
+#include "proto/one_poller.h"
 #include "proto/plane_bytes.h"
 #include "server/admin_http.h"
 #include "server/credentials.h"
@@ -184,6 +185,7 @@ class Server::Impl {
   SessionService session_service_;
   DenoiseService denoise_service_;
   std::string address_;
+  const std::shared_ptr<void> one_poller_ = wire::hold_one_poller();
   std::unique_ptr<grpc::Server> server_;
   std::optional<SharedMemorySocket> shared_memory_;
   std::optional<Timer> expiry_, ticks_;

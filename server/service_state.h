@@ -8,7 +8,7 @@
 
 #include "server/calibrated_costs.h"
 #include "server/config.h"
-#include "server/encoders.h"
+#include "server/job_threads.h"
 #include "server/metrics.h"
 #include "server/scheduler.h"
 #include "server/session_table.h"
@@ -41,7 +41,12 @@ struct ServiceState {
   SharedMemoryOffers shared_memory;
   StreamRegistry streams;
   Scheduler scheduler;
-  Encoders encoders;  ///< as many as lead in the scheduler
+  /// Encode results with formats and codecs, as many as lead in the scheduler. A job is one piece
+  /// of at most 1 MiB, about 1 to 3 ms; a stream has one at a time, so that streams take turns.
+  JobThreads encoders;
+  /// Makes and deletes sessions: their memory is all written, or given back, once, which takes up
+  /// to some tenths of a second.
+  JobThreads session_jobs{2};
   CalibratedCosts costs;
   std::atomic<bool> draining{false};
   const std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();

@@ -1,5 +1,7 @@
 #include "server/session_service.h"
 
+#include <utility>
+
 #include "proto/plane_bytes.h"
 #include "proto/wire_profile.h"
 #include "server/convert.h"
@@ -34,7 +36,8 @@ std::string authorization(const grpc::CallbackServerContext& context) {
 
 /// Runs `work` and ends the call with OK or with the translation of what it threw.
 template <class F>
-grpc::ServerUnaryReactor* answer(Metrics& metrics, grpc::CallbackServerContext* context, F&& work) {
+void answer(Metrics& metrics, grpc::CallbackServerContext* context,
+            grpc::ServerUnaryReactor* reactor, F&& work) {
   grpc::Status status;
   try {
     work();
@@ -43,8 +46,14 @@ grpc::ServerUnaryReactor* answer(Metrics& metrics, grpc::CallbackServerContext* 
     metrics.refused(std::current_exception());
     add_quota(*context, std::current_exception());
   }
-  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
   reactor->Finish(status);
+}
+
+/// The same for a call that has not been given its reactor yet.
+template <class F>
+grpc::ServerUnaryReactor* answer(Metrics& metrics, grpc::CallbackServerContext* context, F&& work) {
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  answer(metrics, context, reactor, std::forward<F>(work));
   return reactor;
 }
 
@@ -71,31 +80,39 @@ grpc::ServerUnaryReactor* SessionService::GetServerInfo(grpc::CallbackServerCont
 grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerContext* context,
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
-  return answer(state_.metrics, context, [&] {
-    const std::string owner = state_.tokens.check(authorization(*context));
-    if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
-    SessionConfig asked = session_config_from(*request);
-    asked.shared_memory = request->shared_memory() && !state_.config.shared_memory.empty();
-    expect_costs(state_.costs, asked);
-    const auto session = state_.sessions.create(std::move(asked), owner);
-    const SessionConfig config = *session->config();
-    response->set_session_id(session->id());
-    response->set_token(session->token());
-    response->set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
-    response->set_max_chunk_bytes(wire::kMaxChunkBytes);
-    for (const PlaneId id : config.results) response->add_result_planes(plane_name(id));
-    response->set_linger_ms(static_cast<std::uint32_t>(state_.config.limits.linger.count()));
-    response->set_recipe(config.denoiser.recipe);
-    response->set_preset(config.denoiser.preset);
-    response->set_memory_bytes(state_.sessions.bytes(*session));
-    response->set_shared_memory(config.shared_memory);
-    state_.log->info(
-        "event=session_create session={} size={}x{} planes={} recipe={} preset={} "
-        "budget_ms={} frames_per_second={} load={:.3f} memory_mib={}",
-        session->id(), config.denoiser.width, config.denoiser.height, config.denoiser.planes.size(),
-        config.denoiser.recipe, config.denoiser.preset, config.budget_ms, config.frames_per_second,
-        config.load, response->memory_bytes() >> 20);
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  state_.session_jobs.post([=, this] {
+    answer(state_.metrics, context, reactor, [&] { create(*context, *request, *response); });
   });
+  return reactor;
+}
+
+void SessionService::create(const grpc::CallbackServerContext& context,
+                            const v1::CreateSessionRequest& request,
+                            v1::CreateSessionResponse& response) {
+  const std::string owner = state_.tokens.check(authorization(context));
+  if (state_.draining) throw RefusedError(Refusal::kDraining, "the server is shutting down");
+  SessionConfig asked = session_config_from(request);
+  asked.shared_memory = request.shared_memory() && !state_.config.shared_memory.empty();
+  expect_costs(state_.costs, asked);
+  const auto session = state_.sessions.create(std::move(asked), owner);
+  const SessionConfig config = *session->config();
+  response.set_session_id(session->id());
+  response.set_token(session->token());
+  response.set_credits(static_cast<std::uint32_t>(state_.config.limits.credits));
+  response.set_max_chunk_bytes(wire::kMaxChunkBytes);
+  for (const PlaneId id : config.results) response.add_result_planes(plane_name(id));
+  response.set_linger_ms(static_cast<std::uint32_t>(state_.config.limits.linger.count()));
+  response.set_recipe(config.denoiser.recipe);
+  response.set_preset(config.denoiser.preset);
+  response.set_memory_bytes(state_.sessions.bytes(*session));
+  response.set_shared_memory(config.shared_memory);
+  state_.log->info(
+      "event=session_create session={} size={}x{} planes={} recipe={} preset={} "
+      "budget_ms={} frames_per_second={} load={:.3f} memory_mib={}",
+      session->id(), config.denoiser.width, config.denoiser.height, config.denoiser.planes.size(),
+      config.denoiser.recipe, config.denoiser.preset, config.budget_ms, config.frames_per_second,
+      config.load, response.memory_bytes() >> 20);
 }
 
 grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext* context,
@@ -117,12 +134,16 @@ grpc::ServerUnaryReactor* SessionService::GetSession(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* SessionService::DeleteSession(grpc::CallbackServerContext* context,
                                                         const v1::DeleteSessionRequest* request,
                                                         v1::DeleteSessionResponse*) {
-  return answer(state_.metrics, context, [&] {
-    state_.sessions.remove(request->session_id(), request->token());
-    state_.metrics.session_ended("deleted", 1);
-    state_.streams.close_session(request->session_id());
-    state_.log->info("event=session_delete session={}", request->session_id());
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  state_.session_jobs.post([=, this] {
+    answer(state_.metrics, context, reactor, [&] {
+      state_.sessions.remove(request->session_id(), request->token());
+      state_.metrics.session_ended("deleted", 1);
+      state_.streams.close_session(request->session_id());
+      state_.log->info("event=session_delete session={}", request->session_id());
+    });
   });
+  return reactor;
 }
 
 }  // namespace holdfast::server

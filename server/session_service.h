@@ -5,7 +5,8 @@
 
 namespace holdfast::server {
 
-/// The unary calls: each converts, asks the session table, and converts back.
+/// The unary calls: each converts, asks the session table, and converts back. Those that take time
+/// do so on a thread of their own.
 class SessionService final : public v1::SessionService::CallbackService {
  public:
   explicit SessionService(ServiceState& state) : state_(state) {}
@@ -24,6 +25,9 @@ class SessionService final : public v1::SessionService::CallbackService {
                                           v1::DeleteSessionResponse* response) override;
 
  private:
+  void create(const grpc::CallbackServerContext& context, const v1::CreateSessionRequest& request,
+              v1::CreateSessionResponse& response);
+
   ServiceState& state_;
 };
 

@@ -2,12 +2,14 @@
 
 #include "client/cli/command.h"
 #include "core/frame/error.h"
+#include "proto/one_poller.h"
 #include "proto/receive_memory.h"
 
 using namespace holdfast::cli;
 
 int main(int argc, char** argv) {
   holdfast::wire::keep_receive_memory();
+  holdfast::wire::prefer_one_poller();
   CLI::App app{"Holdfast: denoising of ray-traced frames with temporally reliable motion vectors"};
   app.require_subcommand(0, 1);  // so that an unknown one is named; none is refused below
   app.set_version_flag("--version", "holdfast 0.1.0");

@@ -6,6 +6,7 @@
 #include "client/sdk/convert.h"
 #include "client/sdk/shared_memory.h"
 #include "client/sdk/status.h"
+#include "proto/one_poller.h"
 
 namespace holdfast::client {
 namespace {
@@ -44,6 +45,7 @@ SessionKeeper::SessionKeeper(const SessionOptions& options, Exchange& exchange)
     : options_(options),
       wire_(profile_of(options.wire)),
       exchange_(exchange),
+      one_poller_(wire::hold_one_poller()),
       channel_(make_channel(options)),
       sessions_(channel_),
       denoise_(channel_) {

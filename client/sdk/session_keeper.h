@@ -51,6 +51,7 @@ class SessionKeeper {
   const SessionOptions options_;
   const wire::WireProfile& wire_;
   Exchange& exchange_;
+  const std::shared_ptr<void> one_poller_;
   const std::shared_ptr<grpc::Channel> channel_;
   v1::SessionService::Stub sessions_;
   grpc::GenericStub denoise_;

@@ -1,12 +1,12 @@
-#include "server/encoders.h"
+#include "server/job_threads.h"
 
 namespace holdfast::server {
 
-Encoders::Encoders(int threads) {
+JobThreads::JobThreads(int threads) {
   for (int i = 0; i < threads; ++i) pool_.emplace_back([this] { work(); });
 }
 
-Encoders::~Encoders() {
+JobThreads::~JobThreads() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -15,7 +15,7 @@ Encoders::~Encoders() {
   for (std::thread& thread : pool_) thread.join();
 }
 
-void Encoders::post(std::function<void()> job) {
+void JobThreads::post(std::function<void()> job) {
   {
     const std::lock_guard lock(mutex_);
     jobs_.push_back(std::move(job));
@@ -23,7 +23,7 @@ void Encoders::post(std::function<void()> job) {
   wake_.notify_one();
 }
 
-void Encoders::work() {
+void JobThreads::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
     wake_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });

@@ -9,15 +9,14 @@
 
 namespace holdfast::server {
 
-/// The threads that encode results with formats and codecs, so that gRPC's threads, which serve all
-/// streams, never wait for one. A job is one piece of at most 1 MiB, about 1 to 3 ms; a stream has
-/// one job at a time, so that streams take turns.
-class Encoders {
+/// Threads for work that gRPC's, which serve all streams, would have to wait for. Jobs are taken in
+/// the order in which they were posted.
+class JobThreads {
  public:
   /// `threads`: at least 1.
-  explicit Encoders(int threads);
+  explicit JobThreads(int threads);
   /// Runs what was posted, then stops.
-  ~Encoders();
+  ~JobThreads();
 
   /// Adds a job, which must not throw. Never blocks on jobs; called from any thread.
   void post(std::function<void()> job);

@@ -1,0 +1,74 @@
+#include "proto/one_poller.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <latch>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/security/credentials.h>
+#include <gtest/gtest.h>
+
+namespace holdfast {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Call {
+  grpc::ClientContext context;
+  grpc::ByteBuffer request, response;
+};
+
+/// How many threads run the reactions to many calls at once, all of which fail.
+std::size_t reacting_threads() {
+  constexpr int kCalls = 100;
+  grpc::GenericStub stub(
+      grpc::CreateChannel("unix:/proc/self/none", grpc::InsecureChannelCredentials()));
+  const grpc::Slice nothing("", 1);
+  std::vector<std::unique_ptr<Call>> calls;
+  std::set<std::thread::id> threads;
+  std::mutex mutex;
+  std::latch left(kCalls);
+  for (int i = 0; i < kCalls; ++i) {
+    Call& call = *calls.emplace_back(std::make_unique<Call>());
+    call.request = grpc::ByteBuffer(&nothing, 1);
+    stub.UnaryCall(&call.context, "/none/None", {}, &call.request, &call.response,
+                   [&](const grpc::Status& status) {
+                     EXPECT_FALSE(status.ok());
+                     std::this_thread::sleep_for(1ms);  // time for another thread to help
+                     {
+                       const std::lock_guard lock(mutex);
+                       threads.insert(std::this_thread::get_id());
+                     }
+                     left.count_down();
+                   });
+  }
+  left.wait();
+  return threads.size();
+}
+
+TEST(OnePoller, IsTheOnlyThreadThatReactsWhileItIsHeld) {
+  if (sysconf(_SC_NPROCESSORS_CONF) > 5) GTEST_SKIP() << "gRPC has more than two threads here";
+  EXPECT_EQ(wire::hold_one_poller(), nullptr) << "not preferred yet";
+  EXPECT_EQ(reacting_threads(), 2u);
+  wire::prefer_one_poller();
+  EXPECT_EQ(reacting_threads(), 2u) << "not held yet";
+  for (int round = 0; round < 3; ++round) {
+    std::shared_ptr<void> first = wire::hold_one_poller(), second = wire::hold_one_poller();
+    ASSERT_NE(first, nullptr);
+    EXPECT_EQ(first, second) << "held together";
+    EXPECT_EQ(reacting_threads(), 1u);
+    first.reset();
+    EXPECT_EQ(reacting_threads(), 1u) << "still held";
+    second.reset();
+    EXPECT_EQ(reacting_threads(), 2u) << "let go";
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
