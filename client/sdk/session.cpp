@@ -4,6 +4,7 @@
 
 #include "client/sdk/exchange.h"
 #include "client/sdk/session_keeper.h"
+#include "proto/one_poller.h"
 
 namespace holdfast::client {
 namespace {
@@ -71,5 +72,7 @@ const std::string& Session::recipe() const { return impl_->keeper.session().reci
 const std::string& Session::preset() const { return impl_->keeper.session().preset(); }
 Traffic Session::traffic() const { return impl_->exchange.traffic(); }
 bool Session::shared_memory() const { return impl_->keeper.shared_memory(); }
+
+void prefer_one_poller() { wire::prefer_one_poller(); }
 
 }  // namespace holdfast::client

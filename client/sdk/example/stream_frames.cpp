@@ -43,6 +43,7 @@ Frame make_frame(int index) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  client::prefer_one_poller();
   client::SessionOptions options;
   if (argc > 1) options.address = argv[1];
   options.width = kWidth;
