@@ -19,52 +19,75 @@ using namespace std::chrono_literals;
 /// gRPC 1.51 has a thread for every second processor that is configured, 2 to 16 of them.
 bool has_two_pollers() { return sysconf(_SC_NPROCESSORS_CONF) / 2 <= 2; }
 
-/// One of gRPC's threads, kept in the reaction to a call that fails at once. gRPC has no option for
-/// the number of its threads.
+/// A thread of gRPC that has waited for a second without an event looks away for a tenth of one.
+constexpr auto kPing = 400ms;
+
+/// Its calls fail at once. It shares no attempts to connect with other channels, whose pauses
+/// between attempts its calls would have to wait for.
+std::shared_ptr<grpc::Channel> channel_to_nobody() {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  return grpc::CreateCustomChannel("unix:/proc/self/none", grpc::InsecureChannelCredentials(),
+                                   arguments);
+}
+
+/// One of gRPC's threads, kept in the reaction to a call that fails at once, where it makes such
+/// calls now and then: their reactions keep the other thread from looking away. gRPC has no option
+/// for the number of its threads.
 class ParkedPoller {
  public:
   ParkedPoller() {
-    const grpc::Slice nothing("", 1);
-    request_ = grpc::ByteBuffer(&nothing, 1);
-    context_.set_deadline(std::chrono::system_clock::now() + 5s);
-    stub_.UnaryCall(&context_, "/holdfast.v1.None/None", {}, &request_, &response_,
-                    [place = place_](const grpc::Status&) { place->park(); });
-    place_->wait_parked();
+    call(context_, [this] { stay(); });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return parked_; });
   }
-  /// Lets the thread go. The end of the channel, which `context_` holds as well, may wait for it,
-  /// so that it must not be the thread's own reaction that brings it about.
-  ~ParkedPoller() { place_->release(); }
+  /// Lets the thread go, and waits until it touches nothing of this any more. The end of the last
+  /// context ends the channel, which waits for gRPC's threads, so that it must not be one of
+  /// theirs.
+  ~ParkedPoller() {
+    std::unique_lock lock(mutex_);
+    released_ = true;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !parked_; });
+  }
 
  private:
-  /// All that the reaction touches, since it may still be returning when the object is gone.
-  struct Place {
-    std::mutex mutex;
-    std::condition_variable changed;
-    bool parked = false, released = false;
+  /// Has a thread of gRPC call `reaction`.
+  template <class Reaction>
+  void call(grpc::ClientContext& context, Reaction reaction) {
+    context.set_deadline(std::chrono::system_clock::now() + 5s);
+    stub_.UnaryCall(&context, "/holdfast.v1.None/None", {}, &nothing_, &answer_,
+                    [reaction](const grpc::Status&) { reaction(); });
+  }
 
-    void park() {
-      std::unique_lock lock(mutex);
-      parked = true;
-      changed.notify_all();
-      changed.wait(lock, [this] { return released; });
+  void stay() {
+    std::unique_lock lock(mutex_);
+    parked_ = true;
+    changed_.notify_all();
+    while (!changed_.wait_for(lock, kPing, [this] { return released_; })) {
+      grpc::ClientContext context;
+      bool answered = false;
+      lock.unlock();
+      call(context, [this, &answered] {
+        const std::lock_guard guard(mutex_);
+        answered = true;
+        changed_.notify_all();
+      });
+      lock.lock();
+      changed_.wait(lock, [&] { return answered; });
     }
-    void wait_parked() {
-      std::unique_lock lock(mutex);
-      changed.wait(lock, [this] { return parked; });
-    }
-    void release() {
-      const std::lock_guard lock(mutex);
-      released = true;
-      changed.notify_all();
-    }
-  };
+    parked_ = false;
+    changed_.notify_all();
+  }
 
-  const std::shared_ptr<Place> place_ = std::make_shared<Place>();
-  grpc::GenericStub stub_{
-      // nobody listens there
-      grpc::CreateChannel("unix:/proc/self/none", grpc::InsecureChannelCredentials())};
+  grpc::GenericStub stub_{channel_to_nobody()};
+  const grpc::Slice byte_{"", 1};
+  const grpc::ByteBuffer nothing_{&byte_, 1};
+  grpc::ByteBuffer answer_;  ///< never filled: all calls fail
   grpc::ClientContext context_;
-  grpc::ByteBuffer request_, response_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool parked_ = false, released_ = false;
 };
 
 std::atomic<bool> preferred = false;

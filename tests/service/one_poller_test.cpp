@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <latch>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -19,6 +21,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Calls fail at once; channels share no pauses between attempts to connect.
+std::shared_ptr<grpc::Channel> channel_to_nobody() {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  return grpc::CreateCustomChannel("unix:/proc/self/none", grpc::InsecureChannelCredentials(),
+                                   arguments);
+}
+
 struct Call {
   grpc::ClientContext context;
   grpc::ByteBuffer request, response;
@@ -27,8 +37,7 @@ struct Call {
 /// How many threads run the reactions to many calls at once, all of which fail.
 std::size_t reacting_threads() {
   constexpr int kCalls = 100;
-  grpc::GenericStub stub(
-      grpc::CreateChannel("unix:/proc/self/none", grpc::InsecureChannelCredentials()));
+  grpc::GenericStub stub(channel_to_nobody());
   const grpc::Slice nothing("", 1);
   std::vector<std::unique_ptr<Call>> calls;
   std::set<std::thread::id> threads;
@@ -68,6 +77,34 @@ TEST(OnePoller, IsTheOnlyThreadThatReactsWhileItIsHeld) {
     second.reset();
     EXPECT_EQ(reacting_threads(), 2u) << "let go";
   }
+}
+
+/// How long a reaction waits for its thread, ms, after nothing has happened for a while.
+double latency_ms(std::chrono::milliseconds idle) {
+  std::this_thread::sleep_for(idle);
+  grpc::GenericStub stub(channel_to_nobody());
+  const grpc::Slice nothing("", 1);
+  Call call;
+  call.request = grpc::ByteBuffer(&nothing, 1);
+  std::latch done(1);
+  const auto begin = std::chrono::steady_clock::now();
+  stub.UnaryCall(&call.context, "/none/None", {}, &call.request, &call.response,
+                 [&](const grpc::Status&) { done.count_down(); });
+  done.wait();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+// gRPC's threads look away for 100 ms when nothing has happened for a second, which a frame each
+// 1.05 s would meet every time.
+TEST(OnePoller, DoesNotLookAwayWhenNothingHappens) {
+  if (sysconf(_SC_NPROCESSORS_CONF) > 5) GTEST_SKIP() << "gRPC has more than two threads here";
+  wire::prefer_one_poller();
+  const std::shared_ptr<void> held = wire::hold_one_poller();
+  std::vector<double> ms;
+  for (int i = 0; i < 5; ++i) ms.push_back(latency_ms(1050ms));
+  std::sort(ms.begin(), ms.end());
+  EXPECT_LT(ms[2], 25.0) << "median of five";
 }
 
 }  // namespace
