@@ -248,6 +248,7 @@ TEST(RadianceBlend, WithinAFootprintSeesOnlyWhatIsNear) {
   // History is wrong to the right of the middle; a narrow window stays clean of it.
   for (const bool narrow : {false, true}) {
     Blend b;
+    b.rule.window_precision = 1.0f;
     test::Random random(80);
     Blend::each([&](int x, int y) {
       for (int c = 0; c < 3; ++c) {
