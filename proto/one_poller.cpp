@@ -97,13 +97,18 @@ std::atomic<bool> preferred = false;
 void prefer_one_poller() { preferred = true; }
 
 std::shared_ptr<void> hold_one_poller() {
+  // Whoever lets go last ends the poller before another one is made: two would keep both threads.
   static std::mutex mutex;
-  static std::weak_ptr<ParkedPoller> held;
+  static int holders = 0;
+  static auto& poller = *new std::unique_ptr<ParkedPoller>;  // outlives whoever holds it at exit
   if (!preferred || !has_two_pollers()) return nullptr;
   const std::lock_guard lock(mutex);
-  std::shared_ptr<ParkedPoller> poller = held.lock();
-  if (!poller) held = poller = std::make_shared<ParkedPoller>();
-  return poller;
+  if (!poller) poller = std::make_unique<ParkedPoller>();
+  ++holders;
+  return {poller.get(), [](void*) {
+            const std::lock_guard guard(mutex);
+            if (--holders == 0) poller.reset();
+          }};
 }
 
 }  // namespace holdfast::wire

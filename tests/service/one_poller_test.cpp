@@ -79,6 +79,20 @@ TEST(OnePoller, IsTheOnlyThreadThatReactsWhileItIsHeld) {
   }
 }
 
+// A poller that ends while another one begins must not leave both threads kept.
+TEST(OnePoller, MayBeHeldAndLetGoByManyThreadsAtOnce) {
+  if (sysconf(_SC_NPROCESSORS_CONF) > 5) GTEST_SKIP() << "gRPC has more than two threads here";
+  wire::prefer_one_poller();
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([] {
+      for (int k = 0; k < 100; ++k) wire::hold_one_poller();
+    });
+  threads.clear();
+  const std::shared_ptr<void> held = wire::hold_one_poller();
+  EXPECT_EQ(reacting_threads(), 1u);
+}
+
 /// How long a reaction waits for its thread, ms, after nothing has happened for a while.
 double latency_ms(std::chrono::milliseconds idle) {
   std::this_thread::sleep_for(idle);
