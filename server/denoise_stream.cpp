@@ -2,6 +2,7 @@
 
 #include "core/frame/error.h"
 #include "proto/plane_bytes.h"
+#include "proto/unix_buffers.h"
 #include "server/error.h"
 #include "server/late_frames.h"
 #include "server/session_change.h"
@@ -107,6 +108,7 @@ void DenoiseStream::handle_hello(const v1::Hello& hello) {
   config_ = session_->config();
   assembler_.emplace(*config_);
   deadlines_.greeted();
+  wire::widen_unix_buffers(state_.config.listen);
   state_.streams.greeted(this);
   const SessionCounters counters = session_->counters();
   v1::Welcome& welcome = *writer_.notice().mutable_welcome();

@@ -7,6 +7,7 @@
 #include "client/sdk/shared_memory.h"
 #include "client/sdk/status.h"
 #include "proto/one_poller.h"
+#include "proto/unix_buffers.h"
 
 namespace holdfast::client {
 namespace {
@@ -114,6 +115,7 @@ grpc::Status SessionKeeper::open(bool fresh, milliseconds timeout) {
       Connection::Config{options_.planes, results_, &wire_, fresh, offer.memory}, hello);
   const grpc::Status status = connection->wait_open(timeout);
   if (!status.ok()) return status;
+  wire::widen_unix_buffers(options_.address);
   shared_memory_ = connection->shared_memory();
   const std::lock_guard lock(mutex_);
   connection_ = std::move(connection);

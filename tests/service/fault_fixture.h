@@ -7,6 +7,7 @@
 
 #include "tests/service/fault_table.h"
 #include "tests/service/raw_client.h"
+#include "tests/service/served.h"
 #include "tests/service/server_process.h"
 
 namespace holdfast::test {
@@ -31,24 +32,12 @@ inline double seconds_since(Clock::time_point start) {
 class Fault : public ::testing::Test {
  protected:
   SessionOptions options() const {
-    SessionOptions out;
-    out.address = socket.address();
-    out.width = config.width;
-    out.height = config.height;
-    out.lights = config.lights;
-    out.planes = config.planes;
+    SessionOptions out = session_options(socket.address(), config);
     out.shared_memory = shared_memory;
     return out;
   }
   /// A session on a server that may just have been started.
-  Session connect() const {
-    for (const auto start = Clock::now();;) try {
-        return Session(options());
-      } catch (const client::ConnectionError&) {
-        if (seconds_since(start) > 20) throw;
-        std::this_thread::sleep_for(20ms);
-      }
-  }
+  Session connect() const { return connected(options()); }
   void pass(Session& session, int index) const {
     session.submit(small_frame(config, index));
     const auto output = session.receive();

@@ -21,10 +21,10 @@ inline server::ServerConfig server_config(int threads, int credits = 3) {
   return config;
 }
 
-inline client::SessionOptions session_options(const server::Server& server,
+inline client::SessionOptions session_options(const std::string& address,
                                               const DenoiserConfig& config) {
   client::SessionOptions options;
-  options.address = server.address();
+  options.address = address;
   options.width = config.width;
   options.height = config.height;
   options.lights = config.lights;
@@ -33,6 +33,20 @@ inline client::SessionOptions session_options(const server::Server& server,
   options.preset = config.preset;
   options.seed = config.seed;
   return options;
+}
+inline client::SessionOptions session_options(const server::Server& server,
+                                              const DenoiserConfig& config) {
+  return session_options(server.address(), config);
+}
+
+/// A session on a server that may just have been started.
+inline client::Session connected(const client::SessionOptions& options) {
+  for (int attempts = 0;; ++attempts) try {
+      return client::Session(options);
+    } catch (const client::ConnectionError&) {
+      if (attempts == 1000) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
 }
 
 /// The results of the core called directly.

@@ -134,39 +134,28 @@ TEST_F(SharedMemorySession, AsksAnotherServerForItAfterTheLossOfTheFirst) {
     };
     auto running = process();
     const DenoiserConfig config = test::small_config(320, 240);
-    SessionOptions options;
-    options.address = socket.address();
-    options.width = config.width;
-    options.height = config.height;
-    options.lights = config.lights;
-    options.planes = config.planes;
+    SessionOptions options = test::session_options(socket.address(), config);
     options.wire = wire;
     options.shared_memory = path();
     options.connect_timeout = 20s;
-    std::optional<Session> session;
-    for (int attempts = 0; !session; ++attempts) try {
-        session.emplace(options);
-      } catch (const client::ConnectionError&) {
-        ASSERT_LT(attempts, 1000);
-        std::this_thread::sleep_for(20ms);
-      }
-    ASSERT_TRUE(session->shared_memory());
-    for (int i = 0; i < 4; ++i) pass(*session, config, i);
-    for (int i = 4; i < 7; ++i) session->submit(test::small_frame(config, i));
+    Session session = test::connected(options);
+    ASSERT_TRUE(session.shared_memory());
+    for (int i = 0; i < 4; ++i) pass(session, config, i);
+    for (int i = 4; i < 7; ++i) session.submit(test::small_frame(config, i));
     running->signal(SIGKILL);
     running->wait();
     running = process();
     bool lost = false;
     for (int i = 4; i < 7; ++i) {
-      const auto output = session->receive();
+      const auto output = session.receive();
       ASSERT_TRUE(output && !output->error);
       EXPECT_EQ(output->index, i);
       lost |= output->history_lost;
     }
-    lost |= pass(*session, config, 7).history_lost;
+    lost |= pass(session, config, 7).history_lost;
     EXPECT_TRUE(lost);
-    EXPECT_TRUE(session->shared_memory());
-    session->close();
+    EXPECT_TRUE(session.shared_memory());
+    session.close();
   }
 }
 

@@ -143,16 +143,6 @@ TEST_F(WireSession, CountsTheSameRepairsUnderEveryProfile) {
   EXPECT_EQ(repairs(server, room.config, frame, "compact"), exact);
 }
 
-/// A session on a server that may just have been started.
-client::Session connected(const client::SessionOptions& options) {
-  for (int attempts = 0;; ++attempts) try {
-      return client::Session(options);
-    } catch (const client::ConnectionError&) {
-      if (attempts == 1000) throw;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-}
-
 TEST_F(WireSession, PlanesOfSeveralChunksArriveWhole) {
   const DenoiserConfig config = test::small_config(640, 480);
   std::vector<Frame> frames;
@@ -196,7 +186,7 @@ TEST_F(WireSession, AnotherServerIsWarmedWithCodedFrames) {
   client::SessionOptions options = test::session_options(server, config);
   options.address = socket.address();
   options.wire = "compact";
-  client::Session session = connected(options);
+  client::Session session = test::connected(options);
   const auto pass = [&](int index) {
     session.submit(std::make_shared<const Frame>(test::small_frame(config, index)));
     auto output = session.receive();
