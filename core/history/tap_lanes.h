@@ -132,6 +132,8 @@ HOLDFAST_INLINE void gather_lanes(ChannelView<const float> channel, const TapLan
     for (int run = 0; run < lanes.runs[group]; ++run) {
       const std::int32_t begin = lanes.starts[group][run];
       const float* p = channel.data + begin + first;
+      __builtin_prefetch(p + 64);
+      __builtin_prefetch(p + dy + 64);
 #pragma GCC ivdep
 #pragma GCC unroll 1
       for (int i = 0; i < kTapGroup; ++i) {
