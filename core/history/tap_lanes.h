@@ -132,8 +132,9 @@ HOLDFAST_INLINE void gather_lanes(ChannelView<const float> channel, const TapLan
     for (int run = 0; run < lanes.runs[group]; ++run) {
       const std::int32_t begin = lanes.starts[group][run];
       const float* p = channel.data + begin + first;
-      __builtin_prefetch(p + 64);
-      __builtin_prefetch(p + dy + 64);
+      // For the next block: dozens of channels are more streams than a processor follows by itself.
+      __builtin_prefetch(p + kTapBlock);
+      __builtin_prefetch(p + dy + kTapBlock);
 #pragma GCC ivdep
 #pragma GCC unroll 1
       for (int i = 0; i < kTapGroup; ++i) {
