@@ -53,18 +53,32 @@ HOLDFAST_INLINE float usable_factor(float v) {
   return abs_of(v) <= std::numeric_limits<float>::max() ? bounded : 0.0f;
 }
 
+constexpr int kAskedBlock = 64, kAskedAhead = 512;  // pixels
+
+/// Has a block of pixels further on fetched: rows change from call to call, and a processor that
+/// follows them by itself loses each at the end of a page. At the end of a row they are the next
+/// one's.
+HOLDFAST_INLINE void ask_ahead(const float* row) {
+  for (int i = 0; i < kAskedBlock; i += 16) __builtin_prefetch(row + kAskedAhead + i);
+}
+
 HOLDFAST_INLINE void add_term_body(const TermRow& a) {
-  const float* __restrict factor = a.factor;
-  const float* __restrict signal = a.signal;
-  const float* __restrict depth = a.depth;
-  float* __restrict out = a.out;
-  if (a.on_sky && signal == nullptr) {
-    for (int x = 0; x < a.width; ++x) out[x] += usable_factor(factor[x]);
-  } else if (factor == nullptr) {
-    for (int x = 0; x < a.width; ++x) out[x] += depth[x] > 0.0f ? signal[x] : 0.0f;
-  } else {
-    for (int x = 0; x < a.width; ++x)
-      out[x] += depth[x] > 0.0f ? usable_factor(factor[x]) * signal[x] : 0.0f;
+  for (int x0 = 0; x0 < a.width; x0 += kAskedBlock) {
+    const float* __restrict factor = a.factor == nullptr ? nullptr : a.factor + x0;
+    const float* __restrict signal = a.signal == nullptr ? nullptr : a.signal + x0;
+    const float* __restrict depth = a.depth + x0;
+    float* __restrict out = a.out + x0;
+    const int count = min_of(kAskedBlock, a.width - x0);
+    if (factor != nullptr) ask_ahead(factor);
+    if (signal != nullptr) ask_ahead(signal);
+    if (a.on_sky && signal == nullptr) {
+      for (int x = 0; x < count; ++x) out[x] += usable_factor(factor[x]);
+    } else if (factor == nullptr) {
+      for (int x = 0; x < count; ++x) out[x] += depth[x] > 0.0f ? signal[x] : 0.0f;
+    } else {
+      for (int x = 0; x < count; ++x)
+        out[x] += depth[x] > 0.0f ? usable_factor(factor[x]) * signal[x] : 0.0f;
+    }
   }
 }
 
