@@ -44,6 +44,7 @@ std::size_t reacting_threads() {
   std::mutex mutex;
   std::latch left(kCalls);
   for (int i = 0; i < kCalls; ++i) {
+    const std::lock_guard made(mutex);  // also `threads`, where gRPC's own order is not seen
     Call& call = *calls.emplace_back(std::make_unique<Call>());
     call.request = grpc::ByteBuffer(&nothing, 1);
     stub.UnaryCall(&call.context, "/none/None", {}, &call.request, &call.response,
