@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 namespace holdfast::check {
 namespace {
 

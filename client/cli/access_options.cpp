@@ -2,6 +2,8 @@
 
 #include <fstream>
 
+#include <CLI/CLI.hpp>
+
 namespace holdfast::cli {
 namespace {
 

@@ -2,8 +2,12 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <holdfast/client.h>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace holdfast::cli {
 

@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/bench.h"
 #include "client/cli/bench_transport.h"
 #include "client/cli/command.h"

@@ -1,5 +1,7 @@
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "client/cli/bench_transport.h"
 
 namespace holdfast::cli {

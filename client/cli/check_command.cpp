@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/check/check.h"
 #include "client/cli/command.h"
 #include "client/cli/json_file.h"

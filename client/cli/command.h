@@ -2,7 +2,9 @@
 
 #include <stdexcept>
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace holdfast::cli {
 

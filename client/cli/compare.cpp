@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/json_file.h"
 #include "client/cli/progress.h"

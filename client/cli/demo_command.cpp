@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/demo.h"
 #include "client/cli/image_size.h"

@@ -1,5 +1,7 @@
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "client/cli/demo.h"
 #include "client/measure/comparison_text.h"
 

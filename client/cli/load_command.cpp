@@ -2,6 +2,8 @@
 #include <fstream>
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/image_size.h"
 #include "client/cli/json_file.h"

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "client/cli/load.h"
 #include "client/cli/percentiles.h"
 

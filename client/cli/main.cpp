@@ -1,5 +1,7 @@
 #include <cstdio>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/command.h"
 #include "core/frame/error.h"
 #include "proto/one_poller.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace holdfast::cli {
 
@@ -24,10 +24,6 @@ inline double median(std::vector<double> values) {
 }
 
 /// {"p50", "p95", "p99"} of the values.
-inline nlohmann::ordered_json percentiles(const std::vector<double>& values) {
-  return {{"p50", percentile(values, 0.50)},
-          {"p95", percentile(values, 0.95)},
-          {"p99", percentile(values, 0.99)}};
-}
+nlohmann::ordered_json percentiles(const std::vector<double>& values);
 
 }  // namespace holdfast::cli

@@ -1,5 +1,7 @@
 #include <memory>
 
+#include <CLI/CLI.hpp>
+
 #include "client/cli/command.h"
 #include "client/cli/image_size.h"
 #include "client/cli/json_file.h"

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <holdfast/client.h>
+#include <nlohmann/json.hpp>
 
 #include "client/cli/command.h"
 #include "client/cli/embedded_server.h"

@@ -1,5 +1,7 @@
 #include "client/cli/study.h"
 
+#include <nlohmann/json.hpp>
+
 #include "client/cli/progress.h"
 #include "client/cli/replay.h"
 #include "client/cli/study_sequence.h"

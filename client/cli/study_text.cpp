@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "client/measure/claims_text.h"
 #include "client/measure/reference_noise.h"
 

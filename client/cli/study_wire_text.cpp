@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "client/cli/study_wire.h"
 #include "client/measure/comparison_text.h"
 

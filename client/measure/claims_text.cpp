@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include <nlohmann/json.hpp>
+
 #include "client/measure/report_plot.h"
 
 namespace holdfast::measure {

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <nlohmann/json.hpp>
+
 #include "client/measure/comparison_text.h"
 #include "client/measure/report_assets.h"
 #include "client/measure/report_plot.h"

@@ -6,6 +6,7 @@
 
 #include "client/sequence/sequence.h"
 #include "tests/cli/run_program.h"
+#include "tests/sanitizers.h"
 #include "tests/service/test_frames.h"
 
 namespace holdfast {
@@ -80,6 +81,7 @@ TEST_F(Replay, WritesTheBitsOfTheCoreCalledDirectlyForOneAndTwoThreads) {
 }
 
 TEST_F(Replay, WritesItsResultAsJsonWithTheKeysOfTheFormat) {
+  if (test::kThreadSanitized) GTEST_SKIP() << "costs are not measured before clients give up";
   ASSERT_EQ(replay({"--json", (dir / "result.json").string(), "--budget-ms", "40000"}), 0) << text;
   const auto json = nlohmann::json::parse(test::file_text(dir / "result.json"));
   EXPECT_EQ(json["frames"], 4);

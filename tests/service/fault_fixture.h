@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <holdfast/client.h>
 
+#include "tests/sanitizers.h"
 #include "tests/service/fault_table.h"
 #include "tests/service/raw_client.h"
 #include "tests/service/served.h"
@@ -16,13 +17,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using client::Session;
 using client::SessionOptions;
-
-// How much slower sanitizers may make what a test times, and a machine that others use as well.
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-inline constexpr double kSlowness = 20;
-#else
-inline constexpr double kSlowness = 3;
-#endif
 
 inline double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

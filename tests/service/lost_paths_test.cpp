@@ -5,6 +5,7 @@
 
 #include "client/scenes/builtin.h"
 #include "client/scenes/renderer.h"
+#include "tests/sanitizers.h"
 #include "tests/service/fault_fixture.h"
 #include "tests/service/frozen_relay.h"
 #include "tests/service/served.h"
@@ -55,9 +56,7 @@ TEST_F(Fault, DiskFullForLogsChangesNothingForClients) {
 
 // Deadlines, linger and rates go by a clock that only goes forward.
 TEST_F(Fault, ClockThatJumpsByADayForthAndBackEndsNoSession) {
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "a sanitizer has to be the first library";
-#endif
+  if (test::kSanitized) GTEST_SKIP() << "a sanitizer has to be the first library";
   const std::string jump = (socket.directory() / "jump").string();
   const ServerProcess server(
       socket.address(), {"--linger-ms", "60000"},
