@@ -1,6 +1,8 @@
 #include <bit>
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/check/checked.h"
 
 namespace holdfast::check::test {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "client/measure/comparison_text.h"
 #include "client/sequence/sequence.h"
