@@ -1,6 +1,6 @@
-# Compiles every header by itself: an object library with one translation unit per header, which
-# includes it twice, so that a header that leans on what others include before it, or lacks its
-# guard, breaks the build.
+# Compiles by itself every header that no file of the same name includes before all else (which
+# include_rules.py sees to): an object library with one translation unit per header, so that a header
+# that leans on what others include before it breaks the build.
 
 # All library targets of the project, collected below `directory`.
 function(holdfast_collect_libraries directory result)
@@ -32,11 +32,15 @@ file(GLOB_RECURSE house_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
 
 set(house_units)
 foreach(house_header IN LISTS house_headers)
+  string(REGEX REPLACE "h$" "cpp" own_file ${house_header})
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${own_file})
+    continue()
+  endif()
   string(MAKE_C_IDENTIFIER ${house_header} name)
   set(unit ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
   # Written only when it differs, so that configuring again compiles nothing again.
   file(CONFIGURE OUTPUT ${unit} @ONLY
-    CONTENT "#include \"@house_header@\"\n#include \"@house_header@\"\n")
+    CONTENT "#include \"@house_header@\"\n")
   list(APPEND house_units ${unit})
 endforeach()
 

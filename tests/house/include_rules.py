@@ -5,7 +5,9 @@
               wire share it
     server    never client/
     client    never server/, but for the one file that embeds a server in the command line
-    all       files of the project by their path from its top, in quotes; only tests include tests/
+    all       files of the project by their path from its top, in quotes; only tests include tests/;
+              a.cpp includes a.h before all else, and so shows that it needs nothing before it
+    headers   begin with #pragma once
 """
 
 import re
@@ -58,11 +60,22 @@ def check(tree):
     """Violations as (path, line number, message)."""
     violations = []
     for path in tree.files(CODE_FOLDERS, CODE_SUFFIXES, names=()):
-        for number, line in enumerate(tree.lines(path), 1):
-            include = INCLUDE.match(line)
-            if include:
-                violations += [(path, number, m) for m in _messages(tree, path, include["what"])]
+        lines = tree.lines(path)
+        includes = [(n, m["what"]) for n, m in enumerate(map(INCLUDE.match, lines), 1) if m]
+        for number, what in includes:
+            violations += [(path, number, m) for m in _messages(tree, path, what)]
+        if path.endswith(".h") and lines[:1] != ["#pragma once"]:
+            violations.append((path, 1, "a header begins with #pragma once"))
+        violations += _order(tree, path, includes)
     return violations
+
+
+def _order(tree, path, includes):
+    own = path.removesuffix(".cpp") + ".h"
+    if not path.endswith(".cpp") or not tree.exists(own):
+        return []
+    number, first = includes[0] if includes else (1, "")
+    return [] if first == f'"{own}"' else [(path, number, f"{own} must be included before all else")]
 
 
 def _messages(tree, path, what):

@@ -120,6 +120,25 @@ class Includes(RulesTest):
         self.refused("server/a.cpp", '#include"client/sdk/a.h" // why', "never includes the client")
         self.refused("server/a.cpp", "#include HEADER", "must name a file")
 
+    def test_own_header_comes_first(self):
+        self.write("server/a.h", "#pragma once\n")
+        for text, violations in (
+            ('#include "server/a.h"\n\n#include <vector>\n', 0),
+            ('// What it is.\n#include "server/a.h"\n', 0),
+            ('#include <vector>\n#include "server/a.h"\n', 1),
+            ("int a;\n", 1),
+        ):
+            self.write("server/a.cpp", text)
+            found = [m for path, _, m in include_rules.check(self.tree) if path == "server/a.cpp"]
+            self.assertEqual(len(found), violations, text)
+
+    def test_headers_begin_with_pragma_once(self):
+        self.write("server/a.h", "#pragma once\n")
+        self.assertEqual(include_rules.check(self.tree), [])
+        for text in ("", "\n#pragma once\n", "#ifndef A\n"):
+            self.write("server/a.h", text)
+            self.assertEqual(len(include_rules.check(self.tree)), 1, text)
+
     def test_only_tests_include_tests(self):
         self.write("tests/core/oracle.h")
         self.allowed("tests/core/a.cpp", '#include "tests/core/oracle.h"')
