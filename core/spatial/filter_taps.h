@@ -30,12 +30,6 @@ struct TapReads {
   bool geometry, luminance, spread;
 };
 
-/// Where taps outside the image read zeros, which weigh nothing.
-enum class Border {
-  kBeside,  ///< beside the rows themselves: kApron of frame/plane.h
-  kCopied,  ///< beside copies of the rows
-};
-
 /// Whether no tap of a pass reaches beyond the zeros that are beside rows.
 HOLDFAST_INLINE bool has_apron(const FilterRow& a) {
   const ChannelView<const float> depth = a.guides->depth();

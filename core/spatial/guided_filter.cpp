@@ -62,7 +62,7 @@ HOLDFAST_INLINE void add_taps(const RowPass& pass, const TapRow& t, int count, i
 }
 
 /// The sums of a block whose weights are found here.
-template <int C, bool kLuminance, Spread kSpread, bool kFootprint, Border kBorder>
+template <int C, bool kLuminance, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
   constexpr TapReads kReads{true, kLuminance, kSpread != Spread::kNone};
@@ -78,7 +78,7 @@ HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock&
     b.luminance = a.luminance.row(a.y) + x0;
     b.inverse_sigma = a.inverse_luminance_sigma.row(a.y) + x0;
   }
-  const bool copied = kBorder == Border::kCopied && !is_inside(a, x0, count);
+  const bool copied = !has_apron(a) && !is_inside(a, x0, count);
   PaddedRows<kGreatestReach> padded;
   for (int ky = -a.weights.radius; ky <= a.weights.radius; ++ky) {
     const int qy = a.y + ky * a.step;
@@ -94,9 +94,9 @@ HOLDFAST_INLINE void sum_up(const RowPass& pass, int x0, int count, FilterBlock&
 }
 
 /// The sums of a block whose weights are kept.
-template <int C, Spread kSpread, bool kFootprint, Border kBorder>
+template <int C, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void sum_up_kept(const FilterRow& a, int x0, int count, FilterBlock& b) {
-  const bool copied = kBorder == Border::kCopied && !is_inside(a, x0, count);
+  const bool copied = !has_apron(a) && !is_inside(a, x0, count);
   PaddedKeptRows padded;
   const KeptRows rows = kept_rows<C, kSpread>(a, x0, count, copied ? &padded : nullptr);
   add_kept_taps<C, kSpread, kFootprint>(a, rows, x0, count, b);
@@ -143,7 +143,7 @@ HOLDFAST_INLINE void write_block(const FilterRow& a, int x0, int count, const Fi
   }
 }
 
-template <int C, Weights kWeights, Spread kSpread, bool kFootprint, Border kBorder>
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, FilterBlock& b) {
   const FilterRow& a = pass.row;
   if constexpr (kFootprint) {
@@ -152,9 +152,9 @@ HOLDFAST_INLINE void filter_block(const RowPass& pass, int x0, int count, Filter
     b.footprint_yy = a.footprint[2].row(a.y) + x0;
   }
   if constexpr (kWeights == Weights::kKept)
-    sum_up_kept<C, kSpread, kFootprint, kBorder>(a, x0, count, b);
+    sum_up_kept<C, kSpread, kFootprint>(a, x0, count, b);
   else
-    sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint, kBorder>(pass, x0, count, b);
+    sum_up<C, kWeights == Weights::kLuminance, kSpread, kFootprint>(pass, x0, count, b);
   write_block<C, kSpread, kWeights == Weights::kLuminance>(a, x0, count, b);
 }
 
@@ -177,12 +177,11 @@ HOLDFAST_INLINE bool is_active(const FilterRow& a, int x) {
 
 /// Where a block that begins at x0 must end at the latest: at its size, and, where rows are copied
 /// for taps outside the image, where those begin or end, so that few are.
-template <Border kBorder>
 HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
   constexpr int kTile = ActivityMap::kTileWidth;
   const int width = a.guides->view.width;
   const int end = min_of(x0 + kFilterBlock, width);
-  if constexpr (kBorder == Border::kBeside) return end;
+  if (has_apron(a)) return end;
   const int reach = a.weights.radius * a.step;
   const int first = (reach + kTile - 1) / kTile * kTile, last = (width - reach) / kTile * kTile;
   if (x0 < first) return min_of(end, first);
@@ -190,31 +189,23 @@ HOLDFAST_INLINE int last_end(const FilterRow& a, int x0) {
 }
 
 /// The row in blocks: as many neighbouring tiles as fit and are all active, or all at rest.
-template <int C, Weights kWeights, Spread kSpread, bool kFootprint, Border kBorder>
-HOLDFAST_INLINE void filter_blocks(const RowPass& pass) {
+template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
+HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
   const FilterRow& a = pass.row;
   constexpr int kTile = ActivityMap::kTileWidth;
   FilterBlock block;
   const int width = a.guides->view.width;
   for (int x0 = 0; x0 < width;) {
     const bool active = is_active(a, x0);
-    const int limit = last_end<kBorder>(a, x0);
+    const int limit = last_end(a, x0);
     int end = min_of(x0 + kTile, limit);
     while (end < limit && is_active(a, end) == active) end = min_of(end + kTile, limit);
     if (active)
-      filter_block<C, kWeights, kSpread, kFootprint, kBorder>(pass, x0, end - x0, block);
+      filter_block<C, kWeights, kSpread, kFootprint>(pass, x0, end - x0, block);
     else
       copy_block<C, kSpread>(a, x0, end - x0);
     x0 = end;
   }
-}
-
-template <int C, Weights kWeights, Spread kSpread, bool kFootprint>
-HOLDFAST_INLINE void filter_row_body(const RowPass& pass) {
-  if (has_apron(pass.row))
-    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kBeside>(pass);
-  else
-    filter_blocks<C, kWeights, kSpread, kFootprint, Border::kCopied>(pass);
 }
 
 // The combinations that the pipeline uses.
