@@ -39,7 +39,7 @@ const Taps* choose_taps(const SurfaceHistory* surface, const EffectHistory* effe
 /// Means over 3x3 pixels of the same surface; sums and samples alike, so that a cone counts in its
 /// neighbours by its samples.
 void spread_out(const Guides& guides, ConeRoom& room, TapWeights& weights) {
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = pass_channels(room.kept.count());

@@ -78,7 +78,7 @@ std::uint64_t load_gradients(const Plane& plane, float largest, GradientScratch&
 
 ChannelView<const float> antilag_of_gradients(const Guides& now, int levels, GradientScratch& s) {
   fill_guides(now, s.guides);
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &s.guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = kChannels;

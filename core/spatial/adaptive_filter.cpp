@@ -40,7 +40,7 @@ class Zones {
 /// Narrows the footprint by a local mean of the samples: precision times samples^(1/4).
 void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& zones,
                       TapWeights& weights, FilterScratch& s) {
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &guides;
   pass.kept = &weights;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
@@ -53,7 +53,7 @@ void narrow_footprint(const Guides& guides, const Signal& signal, const Zones& z
   pass.out[0] = s.guide[2];
   const Channels<float>& footprint = *signal.footprint;
   for_each_row(guides.view.height, [&](int y) {
-    pass_row(pass, y);
+    filter_row(pass, y);
     narrow_row({{footprint[0].row(y), footprint[1].row(y), footprint[2].row(y)},
                 s.guide[2].row(y),
                 guides.view.width,
@@ -77,7 +77,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
                      nullptr});
     });
   }
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {0.5f, 0.25f, 0.0f}};
   pass.kept = &weights;
@@ -99,7 +99,7 @@ void prepare_luminance(const Guides& guides, const Signal& signal, float luminan
   pass.spread_in = std::as_const(s.spread)[1];
   pass.spread_out = s.spread[0];
   for_each_row(height, [&](int y) {
-    pass_row(pass, y);
+    filter_row(pass, y);
     tolerance_row({s.guide[0].row(y), signal.sample_variance.row(y), s.spread[0].row(y),
                    luminance_sigma, width, s.guide[1].row(y)});
   });
@@ -128,7 +128,7 @@ void adaptive_filter(const Guides& guides, const Signal& signal,
   prepare_luminance(guides, signal, settings.luminance_sigma, zones, weights, s);
   if (signal.footprint != nullptr) narrow_footprint(guides, signal, zones, weights, s);
 
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &guides;
   pass.weights = kernel;
   pass.channels = signal.channels;

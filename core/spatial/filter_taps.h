@@ -9,6 +9,14 @@ namespace holdfast {
 
 inline constexpr int kFilterBlock = 64;  // pixels; the block's state stays in the first cache
 
+/// One row of a pass.
+struct FilterRow {
+  const FilterPass& pass;
+  int y;
+  float
+      log2_kernel[3];  ///< of the kernel's weights at distance 0, 1 and 2; not where they are kept
+};
+
 /// Per-pixel terms of a block: the tangent plane, the normal (times its power) and the running
 /// sums.
 struct FilterBlock : TangentPlanes<kFilterBlock> {
@@ -31,13 +39,13 @@ struct TapReads {
 };
 
 /// Whether no tap of a pass reaches beyond the zeros that are beside rows.
-HOLDFAST_INLINE bool has_apron(const FilterRow& a) {
+HOLDFAST_INLINE bool has_apron(const FilterPass& a) {
   const ChannelView<const float> depth = a.guides->depth();
   return a.weights.radius * a.step <= kApron && depth.stride - depth.width >= kApron;
 }
 
 /// Whether all taps of a block lie in columns of the image.
-HOLDFAST_INLINE bool is_inside(const FilterRow& a, int x0, int count) {
+HOLDFAST_INLINE bool is_inside(const FilterPass& a, int x0, int count) {
   const int reach = a.weights.radius * a.step;
   return x0 >= reach && x0 + count + reach <= a.guides->view.width;
 }
@@ -67,7 +75,7 @@ HOLDFAST_INLINE const float* pad_row(const float* row, int width, int x0, int co
 
 /// The row qy at column x0.
 template <int C, TapReads kReads>
-HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
+HOLDFAST_INLINE TapRow tap_row(const FilterPass& a, int x0, int qy) {
   TapRow t{};
   if constexpr (kReads.geometry) {
     t.depth = a.guides->depth().row(qy) + x0;
@@ -84,7 +92,7 @@ HOLDFAST_INLINE TapRow tap_row(const FilterRow& a, int x0, int qy) {
 
 /// The same as copies in `padded`, for a block of `count` pixels.
 template <int C, TapReads kReads, int kReach>
-HOLDFAST_INLINE TapRow padded_tap_row(const FilterRow& a, int x0, int count, int qy,
+HOLDFAST_INLINE TapRow padded_tap_row(const FilterPass& a, int x0, int count, int qy,
                                       PaddedRows<kReach>& padded) {
   const int width = a.guides->view.width, reach = a.weights.radius * a.step;
   TapRow t = tap_row<C, kReads>(a, 0, qy);

@@ -39,12 +39,11 @@ enum class Spread {
               ///< out = sum g N in / sum g N,  N' = (sum g N)^2 / sum g^2 N
 };
 
-/// The pass of one row. All images share size and stride, and 0 beside their rows (kApron). Pixels
-/// without surface (depth 0) copy their inputs; taps without surface have weight 0.
-struct FilterRow {
+/// One pass over an image. All images share size and stride, and 0 beside their rows (kApron).
+/// Pixels without surface (depth 0) copy their inputs; taps without surface have weight 0.
+struct FilterPass {
   const Guides* guides = nullptr;
   FilterWeights weights;
-  int y = 0;
   int step = 1;      ///< 1..kGreatestStep
   int channels = 0;  ///< 1..kMaxFilterChannels
   ChannelView<const float> in[kMaxFilterChannels];
@@ -69,20 +68,14 @@ struct FilterRow {
   int activity_zone = ActivityMap::kWidestZone;  ///< of `activity`, outside which tiles rest
 };
 
-/// Runs one row on the selected instruction set. Compiled for the combinations that the pipeline
-/// uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4
+/// Runs row y of the pass on the selected instruction set. Compiled for the combinations that the
+/// pipeline uses: without luminance, 3x3 taps at steps 1 to 3 of 1 channel with kSamples or 2 or 4
 /// with kVariance (with or without footprint), or of 1, 2, 7 or 8 channels with kNone, or 3
 /// channels with kNone at any step and size; with luminance, 1 or 3 channels with either spread, or
 /// with kSamples and footprint. Asserts that the combination is one of these.
-void filter_row(const FilterRow& row) noexcept;
+void filter_row(const FilterPass& pass, int y) noexcept;
 
-/// Runs `pass` at row y.
-inline void pass_row(FilterRow pass, int y) noexcept {
-  pass.y = y;
-  filter_row(pass);
-}
-
-/// Runs `row` for every y of the image, in parallel. Inputs and outputs must not overlap.
-void filter_image(const FilterRow& row);
+/// Runs every row, in parallel. Inputs and outputs must not overlap.
+void filter_image(const FilterPass& pass);
 
 }  // namespace holdfast

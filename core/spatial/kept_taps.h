@@ -57,31 +57,33 @@ struct PaddedKeptRows {
 
 template <int C, Spread kSpread>
 HOLDFAST_INLINE KeptRows kept_rows(const FilterRow& a, int x0, int count, PaddedKeptRows* padded) {
+  const FilterPass& pass = a.pass;
   constexpr TapReads kReads{false, false, kSpread != Spread::kNone};
   // In place of a row outside the image, where taps weigh nothing, the pixel's own.
-  const int above = a.y >= a.step ? a.y - a.step : a.y;
-  const int below = a.y + a.step < a.guides->view.height ? a.y + a.step : a.y;
+  const int above = a.y >= pass.step ? a.y - pass.step : a.y;
+  const int below = a.y + pass.step < pass.guides->view.height ? a.y + pass.step : a.y;
   if (padded == nullptr)
-    return {tap_row<C, kReads>(a, x0, above), tap_row<C, kReads>(a, x0, a.y),
-            tap_row<C, kReads>(a, x0, below)};
-  return {padded_tap_row<C, kReads>(a, x0, count, above, padded->above),
-          padded_tap_row<C, kReads>(a, x0, count, a.y, padded->own),
-          padded_tap_row<C, kReads>(a, x0, count, below, padded->below)};
+    return {tap_row<C, kReads>(pass, x0, above), tap_row<C, kReads>(pass, x0, a.y),
+            tap_row<C, kReads>(pass, x0, below)};
+  return {padded_tap_row<C, kReads>(pass, x0, count, above, padded->above),
+          padded_tap_row<C, kReads>(pass, x0, count, a.y, padded->own),
+          padded_tap_row<C, kReads>(pass, x0, count, below, padded->below)};
 }
 
 /// The sums of all nine taps of a block.
 template <int C, Spread kSpread, bool kFootprint>
 HOLDFAST_INLINE void add_kept_taps(const FilterRow& a, const KeptRows& rows, int x0, int count,
                                    FilterBlock& b) {
-  const int step = a.step, y = a.y;
-  const std::uint32_t *of_above = a.kept->row(step, TapWeights::kAbove, y) + x0,
-                      *of_own = a.kept->row(step, TapWeights::kBeside, y) + x0,
-                      *of_below = a.kept->row(step, TapWeights::kBelow, y) + x0,
-                      *of_column = a.kept->row(step, TapWeights::kColumn, y) + x0;
+  const FilterPass& pass = a.pass;
+  const int step = pass.step, y = a.y;
+  const std::uint32_t *of_above = pass.kept->row(step, TapWeights::kAbove, y) + x0,
+                      *of_own = pass.kept->row(step, TapWeights::kBeside, y) + x0,
+                      *of_below = pass.kept->row(step, TapWeights::kBelow, y) + x0,
+                      *of_column = pass.kept->row(step, TapWeights::kColumn, y) + x0;
   const TapRow above = rows.above, own = rows.own, below = rows.below;
-  const KeptKernel kernel = kept_kernel(a.weights);
-  const float own_weight = a.weights.kernel[0] * a.weights.kernel[0];
-  const float area = static_cast<float>(step * step) * a.footprint_precision;
+  const KeptKernel kernel = kept_kernel(pass.weights);
+  const float own_weight = pass.weights.kernel[0] * pass.weights.kernel[0];
+  const float area = static_cast<float>(step * step) * pass.footprint_precision;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const PairWeights pair = pair_weights<kFootprint>(b, i, area, kernel);

@@ -12,7 +12,7 @@ struct Signal {
   int channels = 1;                            ///< 1 (visibility) or 3 (linear RGB)
   ChannelView<const float> samples;            ///< number of equal samples behind each pixel, >= 1
   ChannelView<const float> sample_variance;    ///< variance of the luminance of one sample, > 0
-  const Channels<float>* footprint = nullptr;  ///< E, F, G of FilterRow; null: none
+  const Channels<float>* footprint = nullptr;  ///< E, F, G of FilterPass; null: none
 };
 
 /// Scratch of the spatial filters.

@@ -29,7 +29,7 @@ void svgf_filter(const Guides& guides, const Signal& signal, ChannelView<const f
                      s.guide[0].row(y),
                      nullptr});
   });
-  FilterRow pass;
+  FilterPass pass;
   pass.guides = &guides;
   pass.channels = signal.channels;
   pass.spread = Spread::kVariance;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kTile = ActivityMap::kTileWidth;
 
-/// Pixels of a row whose weights are to be found: `row` names their y, step, guides and weights.
+/// Pixels of a row whose weights are to be found, for a pass of that step, guides and weights.
 struct WeightBlock {
-  const FilterRow& row;
-  int x0, count;  ///< 1..kFilterBlock pixels
+  const FilterPass& pass;
+  int x0, y, count;  ///< 1..kFilterBlock pixels
   std::uint32_t* out[TapWeights::kPairs];
 };
 
@@ -45,7 +45,7 @@ HOLDFAST_INLINE void find_pair(const FilterBlock& b, GeometryTap lower, Geometry
 }
 
 /// Where a row is outside the image: nothing has weight.
-HOLDFAST_INLINE TapRow row_without_surface(const FilterRow& a,
+HOLDFAST_INLINE TapRow row_without_surface(const FilterPass& a,
                                            PaddedRows<TapWeights::kSteps>& padded) {
   for (float& value : padded.values[0]) value = 0.0f;
   TapRow t{};
@@ -56,18 +56,19 @@ HOLDFAST_INLINE TapRow row_without_surface(const FilterRow& a,
 
 HOLDFAST_INLINE void find_weights_body(const WeightBlock& block) {
   constexpr TapReads kReads{true, false, false};
-  const FilterRow& a = block.row;
-  const int step = a.step, height = a.guides->view.height, x0 = block.x0, count = block.count;
+  const FilterPass& a = block.pass;
+  const int step = a.step, height = a.guides->view.height, x0 = block.x0, y = block.y;
+  const int count = block.count;
   FilterBlock b;
-  load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(step), x0, a.y,
-                      count, b);
+  load_tangent_planes(*a.guides, a.weights.plane_sigma_px * static_cast<float>(step), x0, y, count,
+                      b);
   for (float* normal : {b.nx, b.ny, b.nz})
     for (int i = 0; i < count; ++i) normal[i] *= a.weights.normal_power;
   PaddedRows<TapWeights::kSteps> padded[3];
   TapRow rows[3];
   const bool inside = has_apron(a) || is_inside(a, x0, count);
   for (int k = 0; k < 3; ++k) {
-    const int qy = a.y + (k - 1) * step;
+    const int qy = y + (k - 1) * step;
     const bool exists = qy >= 0 && qy < height;
     if (!exists)
       rows[k] = row_without_surface(a, padded[k]);
@@ -95,15 +96,10 @@ TapWeights::TapWeights(int width, int height, Memory memory)
 
 void TapWeights::clear() { std::fill(known_.begin(), known_.end(), std::uint8_t{0}); }
 
-void TapWeights::provide(const Guides& guides, const FilterWeights& weights, int step, int x0,
-                         int y, int count) {
+void TapWeights::provide(const FilterPass& pass, int x0, int y, int count) {
+  const int step = pass.step;
   std::uint8_t* known = &known_[static_cast<std::size_t>((step - 1) * height_ + y) *
                                 static_cast<std::size_t>(tiles_)];
-  FilterRow pass;
-  pass.guides = &guides;
-  pass.weights = weights;
-  pass.step = step;
-  pass.y = y;
   const int end = x0 + count;
   for (int x = x0; x < end;) {
     if (known[x / kTile] != 0) {
@@ -116,7 +112,7 @@ void TapWeights::provide(const Guides& guides, const FilterWeights& weights, int
       last += kTile;
     }
     last = std::min(last, end);
-    WeightBlock block{pass, x, last - x, {}};
+    WeightBlock block{pass, x, y, last - x, {}};
     for (int pair = 0; pair < kPairs; ++pair)
       block.out[pair] = words_[(step - 1) * kPairs + pair].row(y) + x;
     find_weights(block);

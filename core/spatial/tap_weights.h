@@ -37,11 +37,10 @@ class TapWeights {
   /// Forgets all: before each frame.
   void clear();
 
-  /// Finds the weights of the pixels of row y from x0 to x0 + count - 1 that are not known yet.
-  /// x0 is at the start of a tile of ActivityMap, as all that begin within a pass are. Rows may be
-  /// asked for by several threads, each row by one.
-  void provide(const Guides& guides, const FilterWeights& weights, int step, int x0, int y,
-               int count);
+  /// Finds the weights of the pixels of row y from x0 to x0 + count - 1 that are not known yet, as
+  /// guides, step and weights of `pass` have them. x0 is at the start of a tile of ActivityMap, as
+  /// all that begin within a pass are. Rows may be asked for by several threads, each row by one.
+  void provide(const FilterPass& pass, int x0, int y, int count);
 
   /// The words of row y; known where provided.
   const std::uint32_t* row(int step, Pair pair, int y) const {

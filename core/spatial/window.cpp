@@ -15,9 +15,9 @@ WindowScratch::WindowScratch(int width, int height, Memory memory)
 
 namespace {
 
-FilterRow first_pass(const Guides& guides, const Channels<float>& in, int count,
-                     const ActivityMap* activity, WindowScratch& scratch) {
-  FilterRow pass;
+FilterPass first_pass(const Guides& guides, const Channels<float>& in, int count,
+                      const ActivityMap* activity, WindowScratch& scratch) {
+  FilterPass pass;
   pass.guides = &guides;
   pass.weights = {.radius = 1, .kernel = {1, 1, 1}};
   pass.channels = count;
@@ -30,9 +30,9 @@ FilterRow first_pass(const Guides& guides, const Channels<float>& in, int count,
   return pass;
 }
 
-FilterRow second_pass(const FilterRow& first, int step, const WindowScratch& scratch,
-                      Channels<float>& out, int first_out) {
-  FilterRow pass = first;
+FilterPass second_pass(const FilterPass& first, int step, const WindowScratch& scratch,
+                       Channels<float>& out, int first_out) {
+  FilterPass pass = first;
   pass.step = step;
   for (int c = 0; c < pass.channels; ++c) {
     pass.in[c] = scratch.between[c];
@@ -45,7 +45,7 @@ FilterRow second_pass(const FilterRow& first, int step, const WindowScratch& scr
 
 void window_means(const Guides& guides, const Channels<float>& in, int count, int second_step,
                   WindowScratch& scratch, Channels<float>& out, const ActivityMap* activity) {
-  FilterRow pass = first_pass(guides, in, count, activity, scratch);
+  FilterPass pass = first_pass(guides, in, count, activity, scratch);
   pass.spread = Spread::kNone;
   filter_image(pass);
   filter_image(second_pass(pass, second_step, scratch, out, 0));
@@ -56,7 +56,7 @@ ChannelView<const float> counted_window_means(const Guides& guides, const Channe
                                               Channels<float>& out, int first_out,
                                               const ActivityMap* activity,
                                               const Channels<float>* footprint, float precision) {
-  FilterRow pass = first_pass(guides, in, count, activity, scratch);
+  FilterPass pass = first_pass(guides, in, count, activity, scratch);
   if (footprint != nullptr)
     for (int c = 0; c < 3; ++c) pass.footprint[c] = (*footprint)[c];
   pass.footprint_precision = precision;

@@ -37,7 +37,7 @@ void window_means(const Guides& guides, const Channels<float>& in, int count, in
 
 /// The same of 2 or 4 channels into those from `first_out` on, with the number n of equal samples
 /// in each window's mean (exact for step 3): returns the channel of 1/n, which is 1 in tiles at
-/// rest. With a `footprint` (E, F, G of FilterRow), of `precision` times its precision,
+/// rest. With a `footprint` (E, F, G of FilterPass), of `precision` times its precision,
 /// taps outside it count less.
 ChannelView<const float> counted_window_means(const Guides& guides, const Channels<float>& in,
                                               int count, int second_step, WindowScratch& scratch,

@@ -17,7 +17,7 @@ struct OraclePixel {
 /// from the camera's own matrices: slow and plain, kept for ever.
 class FilterOracle {
  public:
-  FilterOracle(const FilterRow& pass, const Camera& camera)
+  FilterOracle(const FilterPass& pass, const Camera& camera)
       : pass_(pass),
         width_(pass.guides->view.width),
         height_(pass.guides->view.height),
@@ -97,7 +97,7 @@ class FilterOracle {
     return sum;
   }
 
-  const FilterRow& pass_;
+  const FilterPass& pass_;
   int width_, height_;
   Camera camera_;
   glm::dmat4 world_from_clip_;

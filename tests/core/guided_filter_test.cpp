@@ -98,11 +98,11 @@ struct Images {
     for (int c = 0; c < 3; ++c) test::poison_padding(footprint[c]);
   }
 
-  FilterRow pass(const Combination& combination, int step, int radius) {
+  FilterPass pass(const Combination& combination, int step, int radius) {
     return pass(combination, step, FilterWeights{.radius = radius});
   }
-  FilterRow pass(const Combination& combination, int step, const FilterWeights& weights) {
-    FilterRow row;
+  FilterPass pass(const Combination& combination, int step, const FilterWeights& weights) {
+    FilterPass row;
     kept.clear();
     row.guides = &guides;
     row.kept = &kept;
@@ -151,7 +151,7 @@ constexpr double kKeptSamplesTolerance = 6e-5;
 
 void expect_oracle(Images& images, const Combination& combination, int step,
                    const FilterWeights& weights) {
-  const FilterRow pass = images.pass(combination, step, weights);
+  const FilterPass pass = images.pass(combination, step, weights);
   const test::FilterOracle oracle(pass, images.camera);
   const int width = images.guides.view.width, height = images.guides.view.height;
   std::vector<test::OraclePixel> expected;
@@ -226,7 +226,7 @@ TEST(GuidedFilter, KernelsHaveAsManyTapsAsTheirNameSays) {
   images.in[0].at(10, 10) = 1.0f;
   test::fill(images.spread[0], 1.0f);
   for (const int taps : {9, 13, 25}) {
-    const FilterRow pass = images.pass({3, Spread::kNone, false, false}, 3, kernel_of(taps));
+    const FilterPass pass = images.pass({3, Spread::kNone, false, false}, 3, kernel_of(taps));
     filter_image(pass);
     int reached = 0;
     for (int y = 0; y < size; ++y)
@@ -241,7 +241,7 @@ TEST(GuidedFilter, OneAndManyThreadsGiveTheSameBits) {
   test::Random random(22);
   Images images(test::perspective_camera(129, 67), 129, 67, random);
   for (const Combination& combination : kCombinations) {
-    const FilterRow pass = images.pass(combination, 2, combination.has(2, 2) ? 2 : 1);
+    const FilterPass pass = images.pass(combination, 2, combination.has(2, 2) ? 2 : 1);
     std::vector<float> results[2];
     for (const int k : {0, 1}) {
       const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -282,7 +282,7 @@ TEST(GuidedFilter, KeepsTheEnergyOfAnImpulseOnAFlatSurface) {
   images.in[0].at(20, 20) = 1.0f;
   test::fill(images.spread[0], 1.0f);
   for (const int step : {1, 2, 4}) {
-    const FilterRow pass = images.pass({3, Spread::kNone, false, false}, step, 2);
+    const FilterPass pass = images.pass({3, Spread::kNone, false, false}, step, 2);
     filter_image(pass);
     double sum = 0;
     for (int y = 0; y < size; ++y)
@@ -310,7 +310,7 @@ TEST(GuidedFilter, VarianceAndSamplesPropagateByTheKernelsSquares) {
 TEST(GuidedFilter, KeepsItsWeightsForTheFrame) {
   test::Random random(28);
   Images images(test::perspective_camera(40, 30), 40, 30, random);
-  const FilterRow pass = images.pass({2, Spread::kVariance, false, false}, 2, 1);
+  const FilterPass pass = images.pass({2, Spread::kVariance, false, false}, 2, 1);
   const auto result = [&] {
     filter_image(pass);
     return std::vector<float>(pass.out[0].row(15), pass.out[0].row(15) + 40);
@@ -331,7 +331,7 @@ TEST(GuidedFilter, FindsWeightsOfTilesAsTheyBecomeActive) {
   varying[0].at(50, 20) = 1.0f;
   ActivityMap few(width, height);
   few.measure(images.guides, {{std::as_const(varying)[0]}}, 1, 0.0f);
-  FilterRow pass = images.pass({4, Spread::kVariance, false, true}, 3, 1);
+  FilterPass pass = images.pass({4, Spread::kVariance, false, true}, 3, 1);
   pass.activity = &few;
   filter_image(pass);
   pass.activity = nullptr;
