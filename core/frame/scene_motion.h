@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -102,6 +103,17 @@ class SlotFinder {
   int of(std::uint32_t object_id) {
     if (object_id != id_) slot_ = scene_.slot_of(id_ = object_id);
     return slot_;
+  }
+  /// Finds the slots of several; returns whether they are one.
+  bool of_all(const std::uint32_t* ids, int count, int* slots) {
+    std::uint32_t differing = 0;
+    for (int i = 1; i < count; ++i) differing |= ids[i] ^ ids[0];
+    if (differing == 0) {
+      std::fill_n(slots, count, of(ids[0]));
+      return true;
+    }
+    for (int i = 0; i < count; ++i) slots[i] = of(ids[i]);
+    return std::all_of(slots, slots + count, [&](int s) { return s == slots[0]; });
   }
 
  private:

@@ -1,7 +1,9 @@
 #include "core/history/glossy_history.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "core/history/motion_block.h"
 #include "core/history/tap_search.h"
@@ -40,7 +42,7 @@ class GlossyTracer {
     Taps* taps = out.taps[0].row(y) + x;
     std::fill_n(lanes.wanted.found, count, 0.0f);
     if (!any_sample(x, y, count)) {
-      std::fill_n(taps, count, Taps{});
+      clear(taps, count);
       std::fill_n(lanes.any, count, 0.0f);
       return write(x, y, count, lanes, out);
     }
@@ -63,7 +65,9 @@ class GlossyTracer {
   bool any_sample(int x, int y, int count) const {
     for (int axis = 0; axis < 3; ++axis) {
       const float* direction = planes_.direction->channel(axis).row(y) + x;
-      if (std::any_of(direction, direction + count, [](float d) { return d != 0.0f; })) return true;
+      std::uint32_t bits = 0;
+      for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint32_t>(direction[i]);
+      if (bits << 1 != 0) return true;  // but for the sign of 0
     }
     return false;
   }
@@ -73,15 +77,17 @@ class GlossyTracer {
     const float* depth = now_.depth().row(y) + x;
     const std::uint32_t* id = now_.id[0].row(y) + x;
     const std::uint32_t* hit_id = planes_.id != nullptr ? planes_.id->ids().row(y) + x : nullptr;
-    SlotFinder slot(scene_), hit_slot(scene_);
-    for (int i = 0; i < count; ++i) {
-      lanes.surface[i] = depth[i] > 0.0f ? slot.of(id[i]) : -1;
-      lanes.hit[i] = hit_id != nullptr ? hit_slot.of(hit_id[i]) : 0;
-    }
+    bool one_pair = SlotFinder(scene_).of_all(id, count, lanes.surface);
+    if (hit_id != nullptr)
+      one_pair &= SlotFinder(scene_).of_all(hit_id, count, lanes.hit);
+    else
+      std::fill_n(lanes.hit, count, 0);
+    for (int i = 0; i < count; ++i) lanes.surface[i] = depth[i] > 0.0f ? lanes.surface[i] : -1;
+    if (one_pair) return true;
     const int* first =
         std::find_if(lanes.surface, lanes.surface + count, [](int s) { return s >= 0; });
     const auto at = first - lanes.surface;
-    bool one_pair = true;
+    one_pair = true;
     for (auto i = at; i < count; ++i)
       one_pair &= lanes.surface[i] < 0 ||
                   (lanes.surface[i] == lanes.surface[at] && lanes.hit[i] == lanes.hit[at]);

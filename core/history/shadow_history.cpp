@@ -19,7 +19,7 @@ constexpr float kLeastValid =
 struct Lanes {
   float ratio[kFollowBlock];
   std::uint8_t own[kFollowBlock];                     ///< follows its own blocked sample
-  std::uint8_t wanted[kFollowBlock];                  ///< not followed yet
+  int wanted[kFollowBlock];                           ///< not followed yet
   int surface[kFollowBlock], occluder[kFollowBlock];  ///< slots
   FollowedBlock some, followed;
 };
@@ -30,12 +30,12 @@ bool choose(const FramePair& frames, const ShadowTracer& tracer, ShadowRule rule
             Lanes& lanes) {
   const float* depth = frames.now.depth().row(y) + x;
   const std::uint32_t* id = frames.now.id[0].row(y) + x;
-  bool any = false;
+  int any = 0;
   for (int i = 0; i < count; ++i) {
-    lanes.wanted[i] = depth[i] > 0.0f && valid[i] > kLeastValid;
-    any |= lanes.wanted[i] != 0;
+    lanes.wanted[i] = (depth[i] > 0.0f) & (valid[i] > kLeastValid) ? 1 : 0;
+    any |= lanes.wanted[i];
   }
-  if (!any) return false;
+  if (any == 0) return false;
   const bool moving = tracer.moving_blockers_near(x, y, count);
   SlotFinder slot(frames.scene);
   for (int i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ void follow(const ShadowTracer& tracer, ShadowRule rule, const BlockPixels& pixe
   const std::uint8_t* own = rule == ShadowRule::kPaper ? lanes.own : nullptr;
   FollowedBlock& followed = lanes.followed;
   const int first = static_cast<int>(std::find_if(lanes.wanted, lanes.wanted + pixels.count,
-                                                  [](std::uint8_t wanted) { return wanted != 0; }) -
+                                                  [](int wanted) { return wanted != 0; }) -
                                      lanes.wanted);
   if (is_one_pair(lanes, first, pixels.count)) {
     tracer.follow_block(pixels, x, y, lanes.ratio, own, lanes.surface[first], lanes.occluder[first],
@@ -117,7 +117,7 @@ void take(const FramePair& frames, ShadowRule rule, const FollowedBlock& found, 
 
 /// No shadow to follow.
 void take_none(int x, int y, int count, EffectHistory& out) {
-  std::fill_n(out.taps[0].row(y) + x, count, Taps{});
+  clear(out.taps[0].row(y) + x, count);
   for (int c = 0; c < kMotionChannels; ++c)
     std::fill_n(out.motion[c].row(y) + x, count, c == kMotionSweep ? kNoBlockerSweep : 0.0f);
 }

@@ -135,9 +135,7 @@ bool keep_still(const FramePair& frames, bool rigid, int x, int y, int count, La
 /// Finds the objects of a block's pixels; returns whether they are one.
 bool find_slots(const FramePair& frames, int x, int y, int count, SlotFinder& slot, Lanes& lanes) {
   if (frames.scene.slot_count() == 1) return true;
-  const std::uint32_t* id = frames.now.id[0].row(y) + x;
-  for (int i = 0; i < count; ++i) lanes.slot[i] = slot.of(id[i]);
-  return std::all_of(lanes.slot, lanes.slot + count, [&](int s) { return s == lanes.slot[0]; });
+  return slot.of_all(frames.now.id[0].row(y) + x, count, lanes.slot);
 }
 
 /// A block of pixels that move with one object.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #include "core/frame/guides.h"
 
@@ -14,6 +16,11 @@ struct Taps {
 
   bool any() const { return weight[0] + weight[1] + weight[2] + weight[3] > 0.0f; }
 };
+
+inline void clear(Taps* taps, int count) {
+  static_assert(std::is_trivially_copyable_v<Taps>);  // and all zeros
+  std::memset(static_cast<void*>(taps), 0, sizeof(Taps) * static_cast<std::size_t>(count));
+}
 
 /// What a history pixel must show to count as the same receiver one frame ago.
 struct Receiver {
