@@ -41,15 +41,17 @@ class GlossyTracer {
   void trace(int x, int y, int count, Lanes& lanes, EffectHistory& out) const {
     Taps* taps = out.taps[0].row(y) + x;
     std::fill_n(lanes.wanted.found, count, 0.0f);
-    if (!any_sample(x, y, count)) {
+    if (any_sample(x, y, count)) {
+      const bool one_pair = find_slots(x, y, count, lanes);
+      for (int i = 0; i < count; ++i)
+        if (lanes.surface[i] >= 0)
+          follow(lanes.surface[i], lanes.hit[i], one_pair, x, y, count, lanes);
+    }
+    if (!any_bit(lanes.wanted.found, count)) {
       clear(taps, count);
       std::fill_n(lanes.any, count, 0.0f);
       return write(x, y, count, lanes, out);
     }
-    const bool one_pair = find_slots(x, y, count, lanes);
-    for (int i = 0; i < count; ++i)
-      if (lanes.surface[i] >= 0)
-        follow(lanes.surface[i], lanes.hit[i], one_pair, x, y, count, lanes);
     if (rule_ == GlossyRule::kStochastic) {
       std::copy_n(lanes.wanted.x, count, lanes.centre_x);
       std::copy_n(lanes.wanted.y, count, lanes.centre_y);
@@ -64,12 +66,16 @@ class GlossyTracer {
  private:
   bool any_sample(int x, int y, int count) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const float* direction = planes_.direction->channel(axis).row(y) + x;
-      std::uint32_t bits = 0;
-      for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint32_t>(direction[i]);
-      if (bits << 1 != 0) return true;  // but for the sign of 0
+      if (any_bit(planes_.direction->channel(axis).row(y) + x, count)) return true;
     }
     return false;
+  }
+
+  /// True if any value is not 0.
+  static bool any_bit(const float* values, int count) {
+    std::uint32_t bits = 0;
+    for (int i = 0; i < count; ++i) bits |= std::bit_cast<std::uint32_t>(values[i]);
+    return bits << 1 != 0;  // but for the sign of 0
   }
 
   /// True if all surfaces are of one object and reflect one object.
@@ -97,11 +103,12 @@ class GlossyTracer {
   /// Follows the pixels on one object that reflect another; `all`: there are no others.
   void follow(int surface, int hit, bool all, int x, int y, int count, Lanes& lanes) const {
     const ObjectMotion<float>&of_surface = scene_.object(surface), &of_hit = scene_.object(hit);
-    const bool traceable = of_surface.traceable && of_hit.traceable;
-    // Where all stands still the image has not moved, whatever rounding says.
-    const bool moves = rule_ == GlossyRule::kRelative && !(of_surface.at_rest && of_hit.at_rest);
+    // Where all stands still the image has not moved: its vector is its surface's.
+    const bool relative = rule_ == GlossyRule::kRelative;
+    const bool stays = relative && of_surface.at_rest && of_hit.at_rest;
+    const bool followed = of_surface.traceable && of_hit.traceable && !stays;
     FollowedBlock& then = all ? lanes.wanted : lanes.some;
-    if (traceable) {
+    if (followed) {
       const BlockPixels pixels(now_, x, y, count);
       const auto direction = [&](int axis) { return planes_.direction->channel(axis).row(y) + x; };
       follow_reflection({pixels,
@@ -112,24 +119,23 @@ class GlossyTracer {
                          {direction(0), direction(1), direction(2)},
                          planes_.distance->channel(0).row(y) + x,
                          then,
-                         moves ? lanes.now_x : nullptr,
-                         moves ? lanes.now_y : nullptr});
-      if (rule_ == GlossyRule::kRelative) displace(moves, x, y, count, lanes, then);
+                         relative ? lanes.now_x : nullptr,
+                         relative ? lanes.now_y : nullptr});
+      if (relative) displace(x, y, count, lanes, then);
     }
     for (int i = 0; i < count; ++i) {
       if (lanes.surface[i] != surface || lanes.hit[i] != hit) continue;
       lanes.surface[i] = -1;
-      if (!all && traceable && then.found[i] > 0.0f) copy_lane(then, i, lanes.wanted, i);
+      if (!all && followed && then.found[i] > 0.0f) copy_lane(then, i, lanes.wanted, i);
     }
   }
 
   /// From where images were to where pixels were that move as they do.
-  static void displace(bool moves, int x, int y, int count, const Lanes& lanes,
-                       FollowedBlock& then) {
+  static void displace(int x, int y, int count, const Lanes& lanes, FollowedBlock& then) {
     const float first_x = static_cast<float>(x) + 0.5f, row = static_cast<float>(y) + 0.5f;
     for (int i = 0; i < count; ++i) {
-      then.x[i] = static_cast<float>(i) + first_x + (moves ? then.x[i] - lanes.now_x[i] : 0.0f);
-      then.y[i] = row + (moves ? then.y[i] - lanes.now_y[i] : 0.0f);
+      then.x[i] = static_cast<float>(i) + first_x + (then.x[i] - lanes.now_x[i]);
+      then.y[i] = row + (then.y[i] - lanes.now_y[i]);
     }
   }
 

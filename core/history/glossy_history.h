@@ -23,7 +23,8 @@ struct FrameKey {
 
 /// Fills `out` for all pixels. A pixel without a sample has no taps, nor has one whose vector leads
 /// off screen, behind the camera, or to another receiver (id, plane, normal, roughness within 0.1
-/// where both frames have it). kStochastic tries its sampled pixel, then x_C.
+/// where both frames have it). Nor, under kRelative, has one where camera, surface and what it
+/// mirrors are at rest: its vector is the surface's. kStochastic tries its sampled pixel, then x_C.
 ///   reads guides of both frames, glossy planes | writes `out` | halo 1 px in the previous frame
 void trace_glossy_history(const FramePair& frames, const GlossyPlanes& planes, GlossyRule rule,
                           const FrameKey& key, EffectHistory& out);

@@ -86,13 +86,11 @@ Past reflection_past(const FrameView& frame, const ReflectionInput& input, Gloss
     const glm::dvec2 pixel(x + 0.5, y + 0.5), centre(image_then.x, image_then.y);
     glm::dvec2 at = centre;
     if (rule == GlossyRule::kRelative) {
-      at = pixel;
-      if (!(surface.at_rest && mirrored.at_rest)) {
-        const auto image = project(now.view.pixel_from_relative,
-                                   virtual_image(hit.now, now.position(x, y), now.normal_at(x, y)));
-        if (!image.in_front) return;
-        at += centre - glm::dvec2(image.x, image.y);
-      }
+      if (surface.at_rest && mirrored.at_rest) return;  // as the surface
+      const auto image = project(now.view.pixel_from_relative,
+                                 virtual_image(hit.now, now.position(x, y), now.normal_at(x, y)));
+      if (!image.in_front) return;
+      at = pixel + centre - glm::dvec2(image.x, image.y);
     }
     if (rule == GlossyRule::kStochastic) at = scattered(frame, receiver, hit, key, x, y, centre);
     Taps taps = taps_of(frame, receiver, x, y, at);
