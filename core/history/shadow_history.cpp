@@ -60,17 +60,29 @@ bool is_one_pair(const Lanes& lanes, int first, int count) {
   return true;
 }
 
+/// Follows the pixels on one object in the shadow of another. Where nothing of that has moved, a
+/// borrowed vector would be the surface's: there is none beside it.
+void follow_pair(const ShadowTracer& tracer, ShadowRule rule, const BlockPixels& pixels, int x,
+                 int y, const Lanes& lanes, int surface, int occluder, FollowedBlock& out) {
+  if (rule == ShadowRule::kBorrowed && tracer.at_rest(surface, occluder)) {
+    std::fill_n(out.found, pixels.count, 0.0f);
+    std::fill_n(out.sweep, pixels.count, 0.0f);
+    return;
+  }
+  const std::uint8_t* own = rule == ShadowRule::kPaper ? lanes.own : nullptr;
+  tracer.follow_block(pixels, x, y, lanes.ratio, own, surface, occluder, out);
+}
+
 /// Follows all that are wanted.
 void follow(const ShadowTracer& tracer, ShadowRule rule, const BlockPixels& pixels, int x, int y,
             Lanes& lanes) {
-  const std::uint8_t* own = rule == ShadowRule::kPaper ? lanes.own : nullptr;
   FollowedBlock& followed = lanes.followed;
   const int first = static_cast<int>(std::find_if(lanes.wanted, lanes.wanted + pixels.count,
                                                   [](int wanted) { return wanted != 0; }) -
                                      lanes.wanted);
   if (is_one_pair(lanes, first, pixels.count)) {
-    tracer.follow_block(pixels, x, y, lanes.ratio, own, lanes.surface[first], lanes.occluder[first],
-                        followed);
+    follow_pair(tracer, rule, pixels, x, y, lanes, lanes.surface[first], lanes.occluder[first],
+                followed);
     for (int i = 0; i < pixels.count; ++i) {
       followed.found[i] = lanes.wanted[i] ? followed.found[i] : 0.0f;
       followed.sweep[i] = lanes.wanted[i] ? followed.sweep[i] : kNoBlockerSweep;
@@ -82,7 +94,7 @@ void follow(const ShadowTracer& tracer, ShadowRule rule, const BlockPixels& pixe
   for (int i = first; i < pixels.count; ++i) {
     if (!lanes.wanted[i]) continue;
     const int surface = lanes.surface[i], occluder = lanes.occluder[i];
-    tracer.follow_block(pixels, x, y, lanes.ratio, own, surface, occluder, lanes.some);
+    follow_pair(tracer, rule, pixels, x, y, lanes, surface, occluder, lanes.some);
     for (int k = i; k < pixels.count; ++k) {
       if (!lanes.wanted[k] || lanes.surface[k] != surface || lanes.occluder[k] != occluder)
         continue;

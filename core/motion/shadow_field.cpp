@@ -53,6 +53,7 @@ ShadowTracer::ShadowTracer(const Guides& now, const SceneMotion& scene, const Li
       v_(planes.sample->channel(1)),
       id_(planes.id != nullptr ? planes.id->ids() : ChannelView<const std::uint32_t>{}) {
   const SceneMotion::LightMotion motion = scene.light(light.id);
+  light_at_rest_ = motion.at_rest;
   relative_from_light_ = glm::mat4(motion.relative_from_light);
   previous_relative_from_light_ = glm::mat4(motion.previous_relative_from_light);
   half_axes_ = glm::mat3(glm::dmat3(motion.relative_from_light) * light_half_axes(light));
@@ -186,6 +187,12 @@ int ShadowTracer::nearest_blocker_slot(int x, int y) const {
       return own_blocker_slot(qx, qy);
   }
   return 0;
+}
+
+bool ShadowTracer::at_rest(int surface_slot, int occluder_slot) const {
+  const ObjectMotion<float>& occluder = scene_.object(occluder_slot);
+  return light_at_rest_ && scene_.object(surface_slot).at_rest && occluder.at_rest &&
+         !occluder.appeared;
 }
 
 bool ShadowTracer::moving_blockers_near(int x, int y, int count) const {

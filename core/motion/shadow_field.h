@@ -46,6 +46,8 @@ class ShadowTracer {
   /// The object that blocks the sample of (x, y), and the object of the nearest blocked sample.
   int own_blocker_slot(int x, int y) const;
   int nearest_blocker_slot(int x, int y) const;
+  /// Whether camera, light, receiver and blocker stand still, these as objects of their slots.
+  bool at_rest(int surface_slot, int occluder_slot) const;
   /// False only if all of `count` pixels from (x, y) on have slot 0 as their nearest blocker's.
   bool moving_blockers_near(int x, int y, int count) const;
 
@@ -62,6 +64,7 @@ class ShadowTracer {
   glm::mat4 relative_from_light_, previous_relative_from_light_;
   glm::mat3 half_axes_, previous_half_axes_;
   glm::mat4 pixel_, previous_pixel_;
+  bool light_at_rest_;
 };
 
 }  // namespace holdfast

@@ -56,6 +56,12 @@ void follow(const FrameView& frame, const ShadowInput& input, bool paper, const 
   const Motion& surface = frame.scene.motion(now.id(x, y));
   const Motion& occluder = frame.scene.motion(what.blocker);
   if (!surface.traceable || !occluder.traceable) return;
+  const bool still = surface.at_rest && occluder.at_rest && !occluder.appeared &&
+                     frame.scene.light(input.light.id).at_rest;
+  if (!paper && still) {  // as the surface
+    out.sweep.at(x, y) = 0;
+    return;
+  }
   const glm::dvec4 local = what.own ? input.own_sample(x, y) : light_point(input.light, 0.5, 0.5);
   const glm::dvec4 light = input.places.now * local;
   const glm::dvec3 point = now.position(x, y);
