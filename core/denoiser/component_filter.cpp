@@ -42,14 +42,6 @@ std::uint64_t rounding_key(const ComponentInput& input, Component component) {
          (std::uint64_t{component.light} << 8) + static_cast<std::uint64_t>(component.kind);
 }
 
-/// A history that starts has met no later frame: without this, what was left here before a cut
-/// would count as a difference to it.
-void clear_residual(ComponentHistory& history) {
-  for_each_row(history.data.height(), [&](int y) {
-    for (int c = 0; c < 4; ++c) std::fill_n(history.residual(c).row(y), history.data.width(), 0.0f);
-  });
-}
-
 }  // namespace
 
 ComponentFilter::ComponentFilter(const Plan& plan, const Plan::Entry& entry, int width, int height)
@@ -58,7 +50,7 @@ ComponentFilter::ComponentFilter(const Plan& plan, const Plan::Entry& entry, int
       follows_effect_(entry.follows_effect),
       recipe_(plan.recipe_of(entry)),
       channels_(component_.kind == ComponentKind::kVisibility ? 1 : 3),
-      extras_(plan.extras_of(channels_)),
+      extras_(plan.extras()),
       kept_(width, height, ComponentHistory(channels_, extras_).kept_as(), plan.history_format),
       sample_count_(height) {
   if (entry.cones) cones_ = ConeHistory(width, height, recipe_.indirect_basis, plan.history_format);
@@ -260,7 +252,6 @@ void ComponentFilter::blend(const ComponentInput& input, bool follows, Scratch& 
       rule.rectification = Rectification::kNone;
     accumulate(input.frames.now, s.noisy, sources, rule, before, now,
                recipe_.svgf_filter ? s.filter.odd : now.data, debug);
-    if (now.extras == HistoryExtras::kResidual) clear_residual(now);
   }
 }
 

@@ -169,10 +169,8 @@ Plan Plan::make(const DenoiserConfig& config) {
   return plan;
 }
 
-HistoryExtras Plan::extras_of(int channels) const {
-  if (recipe.svgf_filter) return HistoryExtras::kMoments;
-  const bool residual = channels == 3 && recipe.blending == Blending::kExpectedError;
-  return residual ? HistoryExtras::kResidual : HistoryExtras::kNone;
+HistoryExtras Plan::extras() const {
+  return recipe.svgf_filter ? HistoryExtras::kMoments : HistoryExtras::kNone;
 }
 
 Recipe Plan::recipe_of(const Entry& entry) const {

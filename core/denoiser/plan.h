@@ -52,8 +52,8 @@ struct Plan {
   /// Checks `config` and derives its plan. Throws InputError naming what is wrong.
   static Plan make(const DenoiserConfig& config);
 
-  /// Besides signal and samples, what the history of a component of so many channels holds.
-  HistoryExtras extras_of(int channels) const;
+  /// What the history of a component holds besides signal and samples.
+  HistoryExtras extras() const;
   /// The recipe of a component: at half resolution the same reach takes a level less.
   Recipe recipe_of(const Entry& entry) const;
 

@@ -65,7 +65,7 @@ std::string text_of(const Plan& plan, const Plan::Entry& entry) {
                           entry.follows_effect));
   if (plan.history_format == HistoryFormat::kPacked)
     add("history unpacked, and packed again",
-        2 * packing_traffic(ComponentHistory::channel_count(channels, plan.extras_of(channels))));
+        2 * packing_traffic(ComponentHistory::channel_count(channels, plan.extras())));
   if (recipe.gradient_levels > 0)
     text += name + (entry.gradients ? "history replaced sooner by gradient samples\n"
                                     : "no gradient samples, history at its fixed pace\n");

@@ -12,7 +12,7 @@ Recipe base(std::string name, Blending blending = Blending::kExponential) {
   recipe.name = std::move(name);
   recipe.blending = blending;
   // Reflections slide without a sign in their surface: the slightest difference counts.
-  recipe.glossy_blend.sudden_threshold = 0.3f;
+  recipe.glossy_blend.threshold = 0.7f;
   recipe.indirect_blend.effect_substitutes = true;
   recipe.radiance_filter = {.levels = 4, .luminance_sigma = 4.0f};
   return recipe;
@@ -43,12 +43,9 @@ std::vector<Recipe> make_ablated() {
   without("reflection-vectors").glossy = GlossyVectors::kNone;
   without("dual-vectors").indirect = DisocclusionVectors::kNone;
   without("cones").indirect_basis = RadianceBasis::kIrradiance;
-  Recipe& residual = without("lasting-difference");
-  residual.glossy_blend.residual_beta = residual.indirect_blend.residual_beta = 1.0f;
   Recipe& rest = without("trust-at-rest");
   for (RadianceBlendRule* rule : {&rest.glossy_blend, &rest.indirect_blend}) {
-    rule->rest_sudden_threshold = rule->sudden_threshold;
-    rule->rest_threshold = rule->noise_threshold;
+    rule->rest_threshold = rule->threshold;
   }
   rest.visibility_blend.rest_threshold = rest.visibility_blend.slow_threshold = 0.0f;
   Recipe& unnoticed = without("light-changes");

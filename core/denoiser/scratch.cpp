@@ -37,7 +37,7 @@ void Scratch::grow_rooms(int width, int height, const Plan& plan, const Plan::Gr
   const bool packed = plan.history_format == HistoryFormat::kPacked;
   const Memory memory = packed ? Memory::kLent : Memory::kOwned;
   const auto provide = [&](const HistoryRoom& room, int channels) {
-    const HistoryExtras extras = plan.extras_of(channels);
+    const HistoryExtras extras = plan.extras();
     ComponentHistory now(channels, extras), before(channels, extras);
     if (!room.now.data || room.now.data.memory() != memory)
       now = ComponentHistory(width, height, channels, extras, memory);

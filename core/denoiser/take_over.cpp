@@ -36,8 +36,7 @@ void take_over(const KeptParts& kept, const TakingParts& taking) {
     const bool was_half = kept.plan.components[k].half, is_half = taking.plan.components[k].half;
     const ComponentHistory from = kept.filters[k].kept();
     const Guides& guides = is_half ? half_after : taking.guides;
-    ComponentHistory to(guides.view.width, guides.view.height, from.channels,
-                        taking.plan.extras_of(from.channels));
+    ComponentHistory to(guides.view.width, guides.view.height, from.channels, taking.plan.extras());
     resample_history(was_half ? half_before : kept.guides, guides, share, from, to);
     taking.filters[k].keep(to);
   }

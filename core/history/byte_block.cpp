@@ -12,8 +12,7 @@ HOLDFAST_INLINE int mantissa_of(ByteKind kind) { return kind == ByteKind::kFine 
 /// The magnitude bits of a float, less this, are those of its byte: the greatest block value, just
 /// below 2 and rounded up to it, has the greatest byte.
 HOLDFAST_INLINE std::int32_t base_of(ByteKind kind) {
-  const std::int32_t two = (kFloatBias + 1) << mantissa_of(kind);
-  return two - (kind == ByteKind::kSigned ? 127 : 255);
+  return ((kFloatBias + 1) << mantissa_of(kind)) - 255;
 }
 
 HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
@@ -27,15 +26,12 @@ HOLDFAST_INLINE void pack_byte_body(const BytePacking& a) {
   const int lost = 23 - mantissa_of(a.kind);  // bits of the float's mantissa
   const std::uint32_t noise_mask = (1u << lost) - 1;
   const std::uint32_t* random = a.random;
-  const std::uint32_t sign_mask = a.kind == ByteKind::kSigned ? 0x80u : 0u;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const std::uint32_t noise = random[i] & noise_mask;
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(in[i] * scale);
     const std::uint32_t rounded = ((bits & kMagnitudeBits) + noise) >> lost;
-    const std::int32_t code = max_of(static_cast<std::int32_t>(rounded) - base, 0);
-    out[i] =
-        static_cast<std::uint8_t>(static_cast<std::uint32_t>(code) | ((bits >> 24) & sign_mask));
+    out[i] = static_cast<std::uint8_t>(max_of(static_cast<std::int32_t>(rounded) - base, 0));
   }
 }
 
@@ -45,12 +41,10 @@ HOLDFAST_INLINE void unpack_byte_body(const ByteUnpacking& a) {
   const float scale = power_of_two(-a.exponent);
   const auto base = static_cast<std::uint32_t>(base_of(a.kind));
   const int lost = 23 - mantissa_of(a.kind);
-  const std::uint32_t sign_mask = a.kind == ByteKind::kSigned ? 0x80u : 0u;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
-    const std::uint32_t byte = in[i], sign = byte & sign_mask, code = byte & ~sign_mask;
-    const std::uint32_t magnitude = code == 0 ? 0u : (code + base) << lost;
-    out[i] = std::bit_cast<float>(magnitude | (sign << 24)) * scale;
+    const std::uint32_t code = in[i];
+    out[i] = std::bit_cast<float>(code == 0 ? 0u : (code + base) << lost) * scale;
   }
 }
 

@@ -11,14 +11,13 @@ namespace holdfast {
 inline constexpr int kByteBlock = 64;  ///< values
 
 enum class ByteKind {
-  kPlain,   ///< 8 steps an octave, over 31 octaves
-  kFine,    ///< 32 steps an octave, over 7 octaves
-  kSigned,  ///< 8 steps an octave, over 15 octaves, and a sign
+  kPlain,  ///< 8 steps an octave, over 31 octaves
+  kFine,   ///< 32 steps an octave, over 7 octaves
 };
 
 /// Rounds as `pack_half_block` does, so that means of many values keep right.
 struct BytePacking {
-  const float* in;  ///< finite, absolute values below 1e38; not negative unless kSigned
+  const float* in;  ///< 0 .. 1e38
   int count;        ///< 1..kByteBlock
   ByteKind kind;
   const std::uint32_t* random;  ///< of draw_block_bits

@@ -9,8 +9,7 @@ namespace holdfast {
 /// What a component keeps besides its signal and samples.
 enum class HistoryExtras {
   kNone,
-  kMoments,   ///< the first two moments of the luminance
-  kResidual,  ///< mean difference of the history to later frames, R, G, B, and its variance
+  kMoments,  ///< the first two moments of the luminance
 };
 
 /// What one frame leaves of a component for the next, per pixel: the accumulated signal, the number
@@ -36,14 +35,10 @@ struct ComponentHistory {
     std::vector<KeptAs> as(static_cast<std::size_t>(channels), KeptAs::kHalf);
     as.push_back(KeptAs::kFineByte);
     if (has_moments()) as.insert(as.end(), {KeptAs::kHalf, KeptAs::kHalf});
-    if (extras == HistoryExtras::kResidual)
-      as.insert(as.end(),
-                {KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kSignedByte, KeptAs::kByte});
     return as;
   }
   static int channel_count(int channels, HistoryExtras extras) {
-    const int more = extras == HistoryExtras::kNone ? 0 : extras == HistoryExtras::kMoments ? 2 : 4;
-    return channels + 1 + more;
+    return channels + 1 + (extras == HistoryExtras::kMoments ? 2 : 0);
   }
 
   ChannelView<const float> samples() const { return data[channels]; }
@@ -51,9 +46,6 @@ struct ComponentHistory {
   bool has_moments() const { return extras == HistoryExtras::kMoments; }
   ChannelView<const float> moment(int order) const { return data[channels + order]; }
   ChannelView<float> moment(int order) { return data[channels + order]; }
-  /// R, G, B (0..2) and variance (3) of the residual.
-  ChannelView<const float> residual(int c) const { return data[channels + 1 + c]; }
-  ChannelView<float> residual(int c) { return data[channels + 1 + c]; }
 };
 
 /// The histories that a component may follow: its surface's, and that of the effect itself (shadow,

@@ -21,8 +21,7 @@ int count_of(const std::vector<KeptAs>& channels, bool halves) {
 }
 
 ByteKind byte_kind(KeptAs as) {
-  if (as == KeptAs::kFineByte) return ByteKind::kFine;
-  return as == KeptAs::kSignedByte ? ByteKind::kSigned : ByteKind::kPlain;
+  return as == KeptAs::kFineByte ? ByteKind::kFine : ByteKind::kPlain;
 }
 
 /// Calls `body(c, as, k)` for every channel c, which is the k-th of its kind.

@@ -17,10 +17,9 @@ enum class HistoryFormat {
 
 /// What a channel takes when packed.
 enum class KeptAs {
-  kHalf,        ///< two bytes: half_block.h
-  kByte,        ///< one byte, of values that are not negative: byte_block.h
-  kFineByte,    ///< likewise, in finer steps over a shorter range
-  kSignedByte,  ///< one byte and of either sign
+  kHalf,      ///< two bytes: half_block.h
+  kByte,      ///< one byte, of values that are not negative: byte_block.h
+  kFineByte,  ///< likewise, in finer steps over a shorter range
 };
 
 /// The images that a history keeps. They are floats while a frame is filtered, in rooms that many

@@ -103,25 +103,21 @@ struct RadianceBlend {
     for (int x = 0, count = 0; x < noisy.width(); x += count) {
       count = s.change[0].run(x, y, std::min(kTapBlock, noisy.width() - x));
       const bool rests = at_rest && !s.change[0].changed(x, y);
-      const Taps* first = taps_of(0, x, y, count, own);
-      const Taps* second = candidates() == 2 ? taps_of(1, x, y, count, own) : nullptr;
+      const bool two = candidates() == 2 && any(taps_of(1, x, y, count, own), count);
       for (int k = 0; k < candidates(); ++k) {
         const LightChange& change = s.change[at_rest ? 0 : k];
         change.biases(x, y, count, expected[k]);
       }
-      blend_candidates({{first, second},
-                        second != nullptr && any(second, count) ? 2 : 1,
+      blend_candidates({two ? 2 : 1,
                         x,
                         y,
                         count,
                         noisy,
-                        before,
                         s,
                         spread + x,
                         {expected[0], expected[1]},
                         rule,
-                        rests ? rule.rest_sudden_threshold : rule.sudden_threshold,
-                        rests ? rule.rest_threshold : rule.noise_threshold,
+                        rests ? rule.rest_threshold : rule.threshold,
                         now,
                         chosen,
                         samples,

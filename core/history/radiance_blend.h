@@ -14,16 +14,15 @@ struct RadianceBlendRule {
   int window_step = 2;              ///< window of a difference: 3 + 2 step pixels wide
   float window_precision = 3.0f;    ///< of its footprint, in that of the effect's: it must find
                                     ///< what the filter's would blur
-  float sudden_threshold = 2.0f;    ///< of this frame's difference, taken for noise below
-  float noise_threshold = 1.0f;     ///< of the lasting difference, likewise
-  float rest_sudden_threshold = 300.0f;  ///< the same where nothing in the scene moves: there is
-  float rest_threshold = 300.0f;         ///< little reason to expect bias
-  float residual_beta = 0.2f;            ///< weight of this frame in the lasting difference, 0..1
-  float spatial_samples =
-      40.0f;                   ///< samples that the spatial filter adds: noise averages, bias not
-  float most_samples = 64.0f;  ///< cap of the samples credited to history
-  LightChangeRule change;      ///< where that is found, a scene at rest counts as if it moved, and
-                               ///< history is expected to be biased
+  float threshold = 2.0f;           ///< of the difference, which is taken for noise below
+  float rest_threshold = 300.0f;    ///< the same where nothing in the scene moves: there is little
+                                    ///< reason to expect bias
+  float spatial_samples = 40.0f;    ///< that the spatial filter adds: noise averages, bias not
+  float second_share = 0.9f;        ///< of the first candidate's error: below it the second one is
+                                    ///< taken; nearer ones are told apart by chance
+  float most_samples = 64.0f;       ///< cap of the samples credited to history
+  LightChangeRule change;  ///< where that is found, a scene at rest counts as if it moved, and
+                           ///< history is expected to be biased
 };
 
 /// Scratch of `blend_radiance`: for each candidate, R, G, B and samples; differences to the frame
@@ -50,17 +49,17 @@ struct RadianceBlendScratch {
   }
 };
 
-/// Blends RGB radiance with the candidate history of least expected error. For a candidate h with n
+/// Blends RGB radiance with the candidate history of least expected error (the second one if that
+/// is below second_share of the first one's). For a candidate h with n
 /// samples, d = mean(h - noisy) by channel over a window of m samples, and variance
 /// v' = mean |h - noisy|^2 - |d|^2 of one difference (summed over channels, so that changes of hue
 /// count; at least that of 1e-5 of h, below which differences are rounding), v = v' n / (n + 1)
 /// that of one sample:
 ///   u   = v' / m                                  variance of d
-///   r   = recursive mean of d along the history, w its variance
-///   b^2 = the largest of max(0, |d|^2 - sudden_threshold u), max(0, |r|^2 - noise_threshold w)
-///         and c v', c what LightChange expects of the history there
-///   s   = b^2 / (b^2 + its variance)              share worth subtracting: h' = h - s d (or r)
-///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 variance)
+///   b^2 = the larger of max(0, |d|^2 - threshold u) and c v', c what LightChange expects of the
+///         history there
+///   s   = b^2 / (b^2 + u)                         share worth subtracting: h' = h - s d
+///   e   = v/n + spatial_samples ((1-s)^2 b^2 + s^2 u)
 /// and with k = v/e (capped):  out = (noisy + k h') / (1 + k), N_out = 1 + k: samples count by the
 /// error they leave, bias included, so that the spatial filter leans on what is right. Without a
 /// candidate, out = noisy and N = 1. `at_rest`: neither camera, objects nor lights have moved.

@@ -40,22 +40,15 @@ HOLDFAST_INLINE void read_body(const CandidateBlock& a) {
 
 /// What a candidate promises at each pixel.
 struct Promises {
-  float samples[kTapBlock];      ///< 0: no candidate
-  float error[kTapBlock];        ///< expected squared error
-  float variance[kTapBlock];     ///< of one sample
-  float correction[kTapBlock];   ///< share of `bias` to subtract, 0..1
-  float bias[3][kTapBlock];      ///< the difference that decides
-  float residual[3][kTapBlock];  ///< that of this frame joined with those before
-  float residual_variance[kTapBlock];
+  float samples[kTapBlock];     ///< 0: no candidate
+  float error[kTapBlock];       ///< expected squared error
+  float variance[kTapBlock];    ///< of one sample
+  float correction[kTapBlock];  ///< share of the difference to subtract, 0..1
 };
 
 HOLDFAST_INLINE float norm2(float r, float g, float b) { return r * r + g * g + b * b; }
 
 HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
-  TapLanes lanes;
-  load_lanes(a.taps[k], a.count, a.noisy[0], lanes);
-  float before[4][kTapBlock];
-  for (int c = 0; c < 4; ++c) gather_lanes(a.before.residual(c), lanes, before[c]);
   const RadianceBlendScratch& s = a.scratch;
   const float* n = s.candidates[kStep * k + kSamples].row(a.y) + a.x;
   const float *d0 = s.means[kStep * k].row(a.y) + a.x, *d1 = s.means[kStep * k + 1].row(a.y) + a.x,
@@ -65,8 +58,7 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
               *h1 = s.candidates[kStep * k + 1].row(a.y) + a.x,
               *h2 = s.candidates[kStep * k + 2].row(a.y) + a.x;
   const float *spread = a.spread, *expected = a.expected[k];
-  const float beta = a.rule.residual_beta, spatial_samples = a.rule.spatial_samples;
-  const float sudden_threshold = a.sudden_threshold, lasting_threshold = a.lasting_threshold;
+  const float spatial_samples = a.rule.spatial_samples, threshold = a.threshold;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
     const float samples = n[i] > 0.0f ? n[i] : 1.0f, square = square_mean[i];
@@ -76,32 +68,13 @@ HOLDFAST_INLINE void promise(const RadianceBlendBlock& a, int k, Promises& p) {
     const float of_difference = max_of(square - d_norm2, 1e-6f * square + rounding + 1e-30f);
     const float variance = of_difference * samples / (samples + 1.0f);
     const float u = of_difference * spread[i];
-    // Joined with the mean of those before: a recursive mean of weight beta, which starts as the
-    // plain mean.
-    const float w = before[3][i];
-    const float known = max_of(beta, w / (w + u));
-    const float b = w > 0.0f ? known : 1.0f;
-    const float r0 = (1.0f - b) * before[0][i] + b * d0[i];
-    const float r1 = (1.0f - b) * before[1][i] + b * d1[i];
-    const float r2 = (1.0f - b) * before[2][i] + b * d2[i];
-    const float joined = (1.0f - b) * (1.0f - b) * w + b * b * u;
-    const float sudden =
-        max_of(max_of(d_norm2 - sudden_threshold * u, 0.0f), expected[i] * of_difference);
-    const float lasting = max_of(norm2(r0, r1, r2) - lasting_threshold * joined, 0.0f);
-    const float bias2 = max_of(sudden, lasting), noise = sudden > lasting ? u : joined;
-    const float share = bias2 / (bias2 + noise);
-    const float left = bias2 * (1.0f - share) * (1.0f - share) + noise * share * share;
+    const float bias2 = max_of(max_of(d_norm2 - threshold * u, 0.0f), expected[i] * of_difference);
+    const float share = bias2 / (bias2 + u);
+    const float left = bias2 * (1.0f - share) * (1.0f - share) + u * share * share;
     p.samples[i] = n[i];
     p.error[i] = variance / samples + spatial_samples * left;
     p.variance[i] = variance;
     p.correction[i] = share;
-    p.bias[0][i] = sudden > lasting ? d0[i] : r0;
-    p.bias[1][i] = sudden > lasting ? d1[i] : r1;
-    p.bias[2][i] = sudden > lasting ? d2[i] : r2;
-    p.residual[0][i] = r0;
-    p.residual[1][i] = r1;
-    p.residual[2][i] = r2;
-    p.residual_variance[i] = joined;
   }
 }
 
@@ -113,12 +86,13 @@ HOLDFAST_INLINE void replace(const float* where, const float* with, int count, f
   }
 }
 
-/// Puts the second candidate in place of the first where it promises the smaller error; `chosen` is
-/// 1 there, else 0.
-HOLDFAST_INLINE void choose(int count, const Promises& second, Promises& first, float* chosen) {
+/// Puts the second candidate in place of the first where it promises less than `share` of its
+/// error; `chosen` is 1 there, else 0.
+HOLDFAST_INLINE void choose(int count, float share, const Promises& second, Promises& first,
+                            float* chosen) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const float better = second.error[i] < first.error[i] ? 1.0f : 0.0f;
+    const float better = second.error[i] < share * first.error[i] ? 1.0f : 0.0f;
     const float wanted = first.samples[i] > 0.0f ? better : 1.0f;
     chosen[i] = second.samples[i] > 0.0f ? wanted : 0.0f;
   }
@@ -126,9 +100,6 @@ HOLDFAST_INLINE void choose(int count, const Promises& second, Promises& first, 
   replace(chosen, second.error, count, first.error);
   replace(chosen, second.variance, count, first.variance);
   replace(chosen, second.correction, count, first.correction);
-  for (int c = 0; c < 3; ++c) replace(chosen, second.bias[c], count, first.bias[c]);
-  for (int c = 0; c < 3; ++c) replace(chosen, second.residual[c], count, first.residual[c]);
-  replace(chosen, second.residual_variance, count, first.residual_variance);
 }
 
 HOLDFAST_INLINE void blend_body(const RadianceBlendBlock& a) {
@@ -137,13 +108,11 @@ HOLDFAST_INLINE void blend_body(const RadianceBlendBlock& a) {
   for (int i = 0; i < a.count; ++i) a.chosen[i] = 0.0f;
   if (a.candidates == 2) {
     promise(a, 1, second);
-    choose(a.count, second, p, a.chosen);
+    choose(a.count, a.rule.second_share, second, p, a.chosen);
   }
   const float most = a.rule.most_samples - 1.0f;
-  float kept[kTapBlock];
   float *samples = a.samples, *weight = a.weight;
-  float *out_samples = a.now.samples().row(a.y) + a.x,
-        *out_variance = a.now.residual(3).row(a.y) + a.x;
+  float* out_samples = a.now.samples().row(a.y) + a.x;
 #pragma GCC ivdep
   for (int i = 0; i < a.count; ++i) {
     const float own = min_of(p.variance[i] / p.error[i], most);
@@ -151,23 +120,24 @@ HOLDFAST_INLINE void blend_body(const RadianceBlendBlock& a) {
     const float alpha = 1.0f / (1.0f + counted);
     samples[i] = p.samples[i];
     weight[i] = 1.0f - alpha;
-    // What is subtracted from the history, or replaced by the frame, is no longer wrong with it.
-    kept[i] = (1.0f - alpha) * (1.0f - p.correction[i]);
     out_samples[i] = 1.0f + counted;
-    out_variance[i] = p.samples[i] > 0.0f ? p.residual_variance[i] : 0.0f;
   }
+  const int last = kStep * (a.candidates - 1);
   for (int c = 0; c < 3; ++c) {
     const float* in = a.noisy[c].row(a.y) + a.x;
     const float* first = a.scratch.candidates[c].row(a.y) + a.x;
-    const float* other = a.scratch.candidates[kStep * (a.candidates - 1) + c].row(a.y) + a.x;
-    float *out = a.now.data[c].row(a.y) + a.x, *residual = a.now.residual(c).row(a.y) + a.x;
+    const float* other = a.scratch.candidates[last + c].row(a.y) + a.x;
+    const float* first_bias = a.scratch.means[c].row(a.y) + a.x;
+    const float* other_bias = a.scratch.means[last + c].row(a.y) + a.x;
+    float* out = a.now.data[c].row(a.y) + a.x;
 #pragma GCC ivdep
     for (int i = 0; i < a.count; ++i) {
       const float given_first = first[i], given_other = other[i];
+      const float bias_first = first_bias[i], bias_other = other_bias[i];
       const float given = a.chosen[i] > 0.0f ? given_other : given_first;
-      const float h = max_of(given - p.correction[i] * p.bias[c][i], 0.0f);
+      const float bias = a.chosen[i] > 0.0f ? bias_other : bias_first;
+      const float h = max_of(given - p.correction[i] * bias, 0.0f);
       out[i] = (1.0f - weight[i]) * in[i] + weight[i] * h;
-      residual[i] = kept[i] * p.residual[c][i];
     }
   }
 }

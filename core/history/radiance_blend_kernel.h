@@ -20,15 +20,13 @@ void read_candidate(const CandidateBlock& block) noexcept;
 
 /// Chooses the candidate of least expected error for each pixel, and blends.
 struct RadianceBlendBlock {
-  const Taps* taps[RadianceBlendScratch::kMostCandidates];
   int candidates, x, y, count;
   const Channels<float>& noisy;
-  const ComponentHistory& before;
   const RadianceBlendScratch& scratch;
   const float* spread;  ///< 1 / samples of the windows, from x on
   const float* expected[RadianceBlendScratch::kMostCandidates];  ///< LightChange::bias, from x on
   const RadianceBlendRule& rule;
-  float sudden_threshold, lasting_threshold;
+  float threshold;  ///< that of the rule which holds here
   ComponentHistory& now;
   float *chosen, *samples,
       *weight;  ///< kTapBlock: written; index, its samples (0: none), 1 - alpha

@@ -51,8 +51,6 @@ void copy(const Channels<float>& from, int count, Channels<float>& to) {
 /// What `to` keeps and `from` did not, in row y.
 void begin_extras(int y, ComponentHistory& to) {
   const int width = to.data.width(), last = to.channels - 1;
-  if (to.extras == HistoryExtras::kResidual)
-    for (int c = 0; c < 4; ++c) std::fill_n(to.residual(c).row(y), width, 0.0f);
   if (to.extras != HistoryExtras::kMoments) return;
   for (int x = 0; x < width; ++x) {
     const float value =

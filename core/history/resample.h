@@ -19,9 +19,9 @@ void resample_guides(const Guides& before, Guides& now);
 /// same way for signal and samples. Of these `share` (above 0 .. 1) counts: at a larger size
 /// history is a blur of what it is to show, and a recipe that trusted it wholly would keep that
 /// (36.8 dB after 160x90 to 480x270 on fence; a fresh start 38.7). Sizes that are the same are
-/// copied. What recipes keep besides comes along if both histories have it; else a residual starts
-/// at 0, and moments start at those of the signal, with so few samples (3) that SVGF estimates the
-/// variance in space until it has its own.
+/// copied. What recipes keep besides comes along if both histories have it; else moments start at
+/// those of the signal, with so few samples (3) that SVGF estimates the variance in space until it
+/// has its own.
 ///   reads guides of both sizes, `from` | writes `to` | halo 1 px
 void resample_history(const Guides& before, const Guides& now, float share,
                       const ComponentHistory& from, ComponentHistory& to);

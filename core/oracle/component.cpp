@@ -226,11 +226,7 @@ Blended ComponentOracle::blend(const FrameView& view, const Image& noisy, const 
     if (entry_.component.kind == ComponentKind::kIndirect &&
         rule.rectification == Rectification::kClampFallback)
       rule.rectification = Rectification::kNone;
-    Blended out =
-        blend_exponentially(view.now, noisy, sources, rule, history_, recipe_.svgf_filter);
-    if (recipe_.blending == Blending::kExpectedError && !visibility_)
-      out.now.residual = Image(view.now.width, view.now.height, 4);
-    return out;
+    return blend_exponentially(view.now, noisy, sources, rule, history_, recipe_.svgf_filter);
   }
   const Image* footprint = statistics.footprint ? &statistics.footprint : nullptr;
   if (!visibility_)
@@ -260,7 +256,7 @@ Image ComponentOracle::filter(const FrameView& view, const Statistics& statistic
 
 std::size_t ComponentOracle::bytes() const {
   return history_.signal.bytes() + history_.samples.bytes() + history_.moments.bytes() +
-         history_.residual.bytes() + (cones_ ? cones_->bytes() : 0);
+         (cones_ ? cones_->bytes() : 0);
 }
 
 }  // namespace holdfast::oracle

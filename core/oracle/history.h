@@ -6,11 +6,9 @@ namespace holdfast::oracle {
 
 /// What is kept of one component between frames.
 struct History {
-  Image signal;    ///< 1 or 3 channels
-  Image samples;   ///< number of equal samples behind each pixel
-  Image moments;   ///< the first two moments of the luminance; only for the svgf filter
-  Image residual;  ///< lasting difference R, G, B and its variance; only of radiance by expected
-                   ///< error
+  Image signal;   ///< 1 or 3 channels
+  Image samples;  ///< number of equal samples behind each pixel
+  Image moments;  ///< the first two moments of the luminance; only for the svgf filter
 };
 
 /// What a blend did, besides the history that it leaves.

@@ -63,12 +63,10 @@ Candidate read_candidate(const Image& noisy, const Sources& sources, bool substi
 struct Promise {
   double samples = 0;  ///< 0: there is no candidate
   double error = 0, variance = 0, correction = 0;
-  Colour bias{0}, residual{0};
-  double residual_variance = 0;
+  Colour bias{0};
 };
 
-Promise promise_of(const Candidate& candidate, const Taps& taps, const History& before,
-                   const RadianceBlendRule& rule, double sudden_threshold, double lasting_threshold,
+Promise promise_of(const Candidate& candidate, const RadianceBlendRule& rule, double threshold,
                    double expected, int x, int y) {
   Promise out;
   out.samples = candidate.samples.at(x, y);
@@ -81,25 +79,11 @@ Promise promise_of(const Candidate& candidate, const Taps& taps, const History& 
       std::max(square_mean - glm::dot(d, d), 1e-6 * square_mean + rounding + 1e-30);
   out.variance = of_difference * n / (n + 1);
   const double u = of_difference * candidate.means.spread.at(x, y);
-  // The lasting difference: a recursive mean that starts as the plain mean.
-  const Colour r_before(taps.read(before.residual, 0), taps.read(before.residual, 1),
-                        taps.read(before.residual, 2));
-  const double w = taps.read(before.residual, 3);
-  const double beta = w > 0 ? std::max(double{rule.residual_beta}, w / (w + u)) : 1.0;
-  out.residual = (1 - beta) * r_before + beta * d;
-  out.residual_variance = square(1 - beta) * w + square(beta) * u;
-  const double sudden =
-      std::max({0.0, glm::dot(d, d) - sudden_threshold * u, expected * of_difference});
-  const double lasting = std::max(
-      0.0, glm::dot(out.residual, out.residual) - lasting_threshold * out.residual_variance);
-  const bool is_sudden = sudden > lasting;
-  const double bias2 = std::max(sudden, lasting);
-  const double noise = is_sudden ? u : out.residual_variance;
-  const double s = bias2 / (bias2 + noise);
-  out.bias = is_sudden ? d : out.residual;
+  const double bias2 = std::max({0.0, glm::dot(d, d) - threshold * u, expected * of_difference});
+  const double s = bias2 / (bias2 + u);
+  out.bias = d;
   out.correction = s;
-  out.error =
-      out.variance / n + double{rule.spatial_samples} * (square(1 - s) * bias2 + s * s * noise);
+  out.error = out.variance / n + double{rule.spatial_samples} * (square(1 - s) * bias2 + s * s * u);
   return out;
 }
 
@@ -109,7 +93,6 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
                        const Image* footprint, const RadianceBlendRule& rule, bool at_rest,
                        const History& before) {
   Blended out(now.width, now.height, 3);
-  out.now.residual = Image(now.width, now.height, 4);
   const bool substitutes = rule.effect_substitutes;
   const int count = sources.effect != nullptr && !substitutes ? 2 : 1;
   Candidate candidates[2];
@@ -130,17 +113,16 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
   out.changed_share = changes[0].share();
   for_each_pixel(now.width, now.height, [&](int x, int y) {
     const bool rests = at_rest && !changes[0].changed(x, y);
-    const double sudden = double{rests ? rule.rest_sudden_threshold : rule.sudden_threshold};
-    const double lasting = double{rests ? rule.rest_threshold : rule.noise_threshold};
+    const double threshold = double{rests ? rule.rest_threshold : rule.threshold};
     int chosen = 0;
     Lead lead = lead_of(sources, substitutes, 0, x, y);
-    Promise promise = promise_of(candidates[0], lead.taps, before, rule, sudden, lasting,
-                                 changes[0].bias(x, y), x, y);
+    Promise promise = promise_of(candidates[0], rule, threshold, changes[0].bias(x, y), x, y);
     if (count == 2) {
       const Lead other = lead_of(sources, substitutes, 1, x, y);
-      const Promise second = promise_of(candidates[1], other.taps, before, rule, sudden, lasting,
-                                        changes[1].bias(x, y), x, y);
-      if (second.samples > 0 && (!(promise.samples > 0) || second.error < promise.error)) {
+      const Promise second =
+          promise_of(candidates[1], rule, threshold, changes[1].bias(x, y), x, y);
+      if (second.samples > 0 &&
+          (!(promise.samples > 0) || second.error < double{rule.second_share} * promise.error)) {
         chosen = 1;
         lead = other;
         promise = second;
@@ -155,9 +137,6 @@ Blended blend_radiance(const Surfaces& now, const Image& noisy, const Sources& s
     const Colour h = glm::max(given - promise.correction * promise.bias, Colour(0));
     set_colour(out.now.signal, x, y, alpha * colour_at(noisy, x, y) + (1 - alpha) * h);
     out.now.samples.at(x, y) = 1 + k;
-    // What is subtracted from the history, or replaced by the frame, is no longer wrong with it.
-    set_colour(out.now.residual, x, y, (1 - alpha) * (1 - promise.correction) * promise.residual);
-    out.now.residual.at(x, y, 3) = promise.residual_variance;
     out.record(x, y, *lead.past, promise.samples, 1 - alpha);
   });
   return out;

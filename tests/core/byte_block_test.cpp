@@ -30,19 +30,16 @@ std::vector<float> unpack(const Packed& packed, ByteKind kind, int count) {
   return out;
 }
 
-constexpr ByteKind kKinds[] = {ByteKind::kPlain, ByteKind::kFine, ByteKind::kSigned};
+constexpr ByteKind kKinds[] = {ByteKind::kPlain, ByteKind::kFine};
 
 int steps_of(ByteKind kind) { return kind == ByteKind::kFine ? 32 : 8; }
 
 /// The value of a byte, by its definition: so many steps an octave, counted down from 2.
 double value_of(std::uint8_t byte, ByteKind kind) {
-  const int greatest = kind == ByteKind::kSigned ? 127 : 255, code = byte & greatest;
-  if (code == 0) return 0;
-  const int below = greatest - code, steps = steps_of(kind);  // 0: exactly 2
-  const double magnitude =
-      std::ldexp(1.0 + static_cast<double>((steps - below % steps) % steps) / steps,
-                 1 - (below + steps - 1) / steps);
-  return kind == ByteKind::kSigned && byte > 127 ? -magnitude : magnitude;
+  if (byte == 0) return 0;
+  const int below = 255 - byte, steps = steps_of(kind);  // 0: exactly 2
+  return std::ldexp(1.0 + static_cast<double>((steps - below % steps) % steps) / steps,
+                    1 - (below + steps - 1) / steps);
 }
 
 TEST(ByteBlock, EveryByteSurvivesTheRoundTripOnEveryInstructionSet) {
@@ -55,14 +52,13 @@ TEST(ByteBlock, EveryByteSurvivesTheRoundTripOnEveryInstructionSet) {
         std::vector<float> values;
         for (int i = 0; i < 32; ++i) given.bytes[i] = static_cast<std::uint8_t>(first + i);
         given.bytes[32] = static_cast<std::uint8_t>(
-            (kind == ByteKind::kSigned ? 127 : 255) -
-            steps_of(kind));  // 1, so that the block needs no power of two
+            255 - steps_of(kind));  // 1, so that the block needs no power of two
         values = unpack(given, kind, 33);
         for (int i = 0; i < 33; ++i)
           ASSERT_EQ(double{values[static_cast<std::size_t>(i)]}, value_of(given.bytes[i], kind))
               << int{given.bytes[i]};
-        for (float& value : values)  // 2 and -2 are what rounding up leads to, no greatest value
-          if (std::abs(value) >= 2.0f) value = 1.0f;
+        for (float& value : values)  // 2 is what rounding up leads to, no greatest value
+          if (value >= 2.0f) value = 1.0f;
         const Packed again = pack(values, kind, 77u * static_cast<std::uint32_t>(first));
         EXPECT_EQ(again.exponent, 0);
         EXPECT_EQ(unpack(again, kind, 33), values) << isa_name(isa);
@@ -75,21 +71,20 @@ TEST(ByteBlock, RoundsToANeighbourAndKeepsTheMean) {
     std::vector<float> values;
     for (int i = 0; i < kByteBlock; ++i)
       values.push_back(
-          std::exp2((kind == ByteKind::kFine ? -0.09f : -0.17f) * static_cast<float>(i)) *
-          (kind == ByteKind::kSigned && i % 3 == 0 ? -1.7f : 1.7f));
+          std::exp2((kind == ByteKind::kFine ? -0.09f : -0.17f) * static_cast<float>(i)) * 1.7f);
     const double step = 1.0 / steps_of(kind);  // at most, of a value
     std::vector<double> sums(kByteBlock);
     constexpr int kDraws = 4000;
     for (std::uint32_t seed = 0; seed < kDraws; ++seed) {
       const auto rounded = unpack(pack(values, kind, seed * 2654435761u), kind, kByteBlock);
       for (std::size_t i = 0; i < sums.size(); ++i) {
-        ASSERT_LT(double{std::abs(rounded[i] - values[i])}, step * double{std::abs(values[i])});
+        ASSERT_LT(double{std::abs(rounded[i] - values[i])}, step * double{values[i]});
         sums[i] += double{rounded[i]};
       }
     }
     for (std::size_t i = 0; i < sums.size(); ++i)
       EXPECT_NEAR(sums[i] / kDraws, double{values[i]},
-                  2.5 * step * std::abs(double{values[i]}) / std::sqrt(kDraws))
+                  2.5 * step * double{values[i]} / std::sqrt(kDraws))
           << i;
   }
 }

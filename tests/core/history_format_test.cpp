@@ -107,9 +107,9 @@ TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
   EXPECT_NEAR(kept_bytes(shadows, "f16"), kPacked + 2 + 1, 1.0);
   EXPECT_NEAR(kept_bytes(shadows, "f32"), kGuides + 8 + kResults, 1e-9);
   DenoiserConfig all = test::full_config(64, 64);
-  const double visibilities = 2 * (2 + 1), radiances = 2 * (6 + 1 + 4);
+  const double visibilities = 2 * (2 + 1), radiances = 2 * (6 + 1);
   EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances, 1.0);
-  const double floats = kGuides + 2 * (8 + kResults) + 2 * (32 + kColours);
+  const double floats = kGuides + 2 * (8 + kResults) + 2 * (16 + kColours);
   EXPECT_NEAR(kept_bytes(all, "f32"), floats, 1e-9);
   all.planes.push_back({PlaneKind::kIndirectDirection, {}});
   EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 14, 1.3);
@@ -117,13 +117,13 @@ TEST(HistoryFormat, EveryKindOfSceneKeepsTheBytesThatItsChannelsTake) {
   all.indirect_basis = "cones";
   EXPECT_NEAR(kept_bytes(all, "f16"), kPacked + visibilities + radiances + 24, 1.6);
   all.half_resolution = {"indirect"};
-  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 11 + (11 + 24) / 4.0, 2.0);
+  EXPECT_NEAR(kept_bytes(all, "f16"), 1.25 * kPacked + visibilities + 7 + (7 + 24) / 4.0, 2.0);
 }
 
 TEST(HistoryFormat, ThePlansTextSaysWhatIsKept) {
   const DenoiserConfig config = packed_config(64, 64);
   const std::string text = Denoiser(config).plan_text();
-  EXPECT_NE(text.find("kept of glossy as f16: 11."), std::string::npos) << text;
+  EXPECT_NE(text.find("kept of glossy as f16: 7."), std::string::npos) << text;
   EXPECT_NE(text.find("kept cones of indirect as f16: 14."), std::string::npos) << text;
   EXPECT_NE(text.find("all that is kept from frame to frame: "), std::string::npos) << text;
 }

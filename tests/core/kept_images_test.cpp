@@ -13,7 +13,7 @@ namespace holdfast {
 namespace {
 
 constexpr int kWidth = 83, kHeight = 21;
-const std::vector<KeptAs> kAll = {KeptAs::kHalf, KeptAs::kByte, KeptAs::kSignedByte, KeptAs::kHalf,
+const std::vector<KeptAs> kAll = {KeptAs::kHalf, KeptAs::kByte, KeptAs::kFineByte, KeptAs::kHalf,
                                   KeptAs::kFineByte};
 
 Channels<float> noise(std::uint32_t seed) {
@@ -22,8 +22,7 @@ Channels<float> noise(std::uint32_t seed) {
   for (int c = 0; c < out.count(); ++c)
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
-        const float value = random.real(0.1f, 3.0f);
-        out[c].at(x, y) = c == 2 && x % 2 ? -value : value;
+        out[c].at(x, y) = random.real(0.1f, 3.0f);
       }
   return out;
 }

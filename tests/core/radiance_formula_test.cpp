@@ -34,7 +34,7 @@ std::vector<double> plain_window(const std::vector<double>& in, bool variances) 
 
 /// What the documented formula makes of one pixel with one candidate.
 struct Expected {
-  double data[3], samples, residual[3], variance;
+  double data[3], samples;
 };
 Expected expected_of(const Blend& b, int x, int y, const double (&d)[3], double square,
                      double inverse_m) {
@@ -42,28 +42,15 @@ Expected expected_of(const Blend& b, int x, int y, const double (&d)[3], double 
   const double n = b.before.samples().at(x, y);
   const double v_difference = square - (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   const double v = v_difference * n / (n + 1), u = v_difference * inverse_m;
-  const double w_before = b.before.residual(3).at(x, y);
-  const double beta =
-      w_before > 0 ? std::max(double(rule.residual_beta), w_before / (w_before + u)) : 1.0;
-  double r[3], r2 = 0, d2 = 0;
-  for (int c = 0; c < 3; ++c) {
-    r[c] = (1 - beta) * double(b.before.residual(c).at(x, y)) + beta * d[c];
-    r2 += r[c] * r[c];
-    d2 += d[c] * d[c];
-  }
-  const double w = (1 - beta) * (1 - beta) * w_before + beta * beta * u;
-  const double sudden = std::max(0.0, d2 - double(rule.sudden_threshold) * u);
-  const double lasting = std::max(0.0, r2 - double(rule.noise_threshold) * w);
-  const double b2 = std::max(sudden, lasting), noise = sudden > lasting ? u : w;
-  const double s = b2 / (b2 + noise);
-  const double e = v / n + double(rule.spatial_samples) * ((1 - s) * (1 - s) * b2 + s * s * noise);
+  const double d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const double b2 = std::max(0.0, d2 - double(rule.threshold) * u);
+  const double s = b2 / (b2 + u);
+  const double e = v / n + double(rule.spatial_samples) * ((1 - s) * (1 - s) * b2 + s * s * u);
   const double k = std::min(v / e, 63.0);
-  Expected out{{}, 1 + k, {}, w};
+  Expected out{{}, 1 + k};
   for (int c = 0; c < 3; ++c) {
-    const double h =
-        std::max(double(b.before.data[c].at(x, y)) - s * (sudden > lasting ? d[c] : r[c]), 0.0);
+    const double h = std::max(double(b.before.data[c].at(x, y)) - s * d[c], 0.0);
     out.data[c] = (double(b.noisy[c].at(x, y)) + k * h) / (1 + k);
-    out.residual[c] = k / (1 + k) * (1 - s) * r[c];
   }
   return out;
 }
@@ -75,10 +62,8 @@ TEST(RadianceBlend, AgreesWithTheDocumentedFormula) {
   for (int c = 0; c < 3; ++c) {
     test::fill_random(b.noisy[c], random, 0, 1);
     test::fill_random(b.before.data[c], random, 0.1f, 1.2f);
-    test::fill_random(b.before.residual(c), random, -0.1f, 0.1f);
   }
   test::fill_random(b.before.samples(), random, 1, 64);
-  test::fill_random(b.before.residual(3), random, 0, 0.02f);
   b.run(b.by_surface());
 
   std::vector<double> differences[3], squares(kWidth * kHeight);
@@ -97,11 +82,8 @@ TEST(RadianceBlend, AgreesWithTheDocumentedFormula) {
     const auto at = static_cast<std::size_t>(y * kWidth + x);
     const double d[3] = {differences[0][at], differences[1][at], differences[2][at]};
     const Expected want = expected_of(b, x, y, d, square[at], inverse_m[at]);
-    for (int c = 0; c < 3; ++c) {
+    for (int c = 0; c < 3; ++c)
       ASSERT_NEAR(b.now.data[c].at(x, y), want.data[c], 5e-5) << x << ", " << y;
-      ASSERT_NEAR(b.now.residual(c).at(x, y), want.residual[c], 5e-5) << x << ", " << y;
-    }
-    ASSERT_NEAR(b.now.residual(3).at(x, y), want.variance, 1e-6);
     ASSERT_NEAR(b.now.samples().at(x, y), want.samples, 1e-3 * want.samples);
     by_history += want.samples > 10 ? 1 : 0;
   });

@@ -16,7 +16,7 @@ struct RadianceHistory : StillHistory {
   RadianceBlendRule rule;
   bool at_rest = false;
 
-  RadianceHistory() : StillHistory(kWidth, kHeight, 3, HistoryExtras::kResidual) {}
+  RadianceHistory() : StillHistory(kWidth, kHeight, 3) {}
   void run(const HistorySources& sources, Channels<float>* debug = nullptr,
            const Channels<float>* footprint = nullptr) {
     blend_radiance(guides, noisy, sources, footprint, rule, at_rest, before, scratch, window, now,

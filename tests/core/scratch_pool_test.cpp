@@ -249,7 +249,7 @@ TEST(SharedScratch, DenoisersOnSeveralThreadsGiveTheBitsOfThoseAlone) {
 TEST(SharedScratch, IsMostOfWhatADenoiserWorksWith) {
   const Denoiser floats(config_of("balanced", 64, 64));
   EXPECT_GT(floats.scratch_bytes(), 400u * 64 * 64);
-  EXPECT_EQ(floats.held_bytes(), floats.history_bytes() + (24 + 8 + 32 + 8) * 64 * 64 + 6 * 64)
+  EXPECT_EQ(floats.held_bytes(), floats.history_bytes() + (24 + 8 + 16 + 8) * 64 * 64 + 6 * 64)
       << "guides and a history of one and of three channels to change places with, given vectors; "
          "a cache line before each of the six images";
   DenoiserConfig config = config_of("balanced", 64, 64);

@@ -109,9 +109,6 @@ inline void fill_history(ComponentHistory& history, Random& random, float larges
     for (int y = 0; y < history.data.height(); ++y)
       for (int x = 0; x < history.data.width(); ++x)
         history.moment(2).at(x, y) += history.moment(1).at(x, y) * history.moment(1).at(x, y);
-  if (history.extras == HistoryExtras::kResidual)
-    for (int c = 0; c < 4; ++c)
-      fill_random(history.residual(c), random, c < 3 ? -0.05f : 1e-4f, c < 3 ? 0.05f : 0.01f);
 }
 
 inline oracle::History history_of(const ComponentHistory& history) {
@@ -119,8 +116,6 @@ inline oracle::History history_of(const ComponentHistory& history) {
   out.signal = image_of(history.data, 0, history.channels);
   out.samples = image_of(history.data, history.channels, 1);
   if (history.has_moments()) out.moments = image_of(history.data, history.channels + 1, 2);
-  if (history.extras == HistoryExtras::kResidual)
-    out.residual = image_of(history.data, history.channels + 1, 4);
   return out;
 }
 
