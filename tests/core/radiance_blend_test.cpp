@@ -172,6 +172,27 @@ TEST(RadianceBlend, TakesTheBetterOfTwoCandidates) {
   }
 }
 
+// The same values behind both: without bias, their errors are as 1 / (1 + samples).
+TEST(RadianceBlend, ASecondCandidateMustPromiseATenthLess) {
+  for (const float second : {34.0f, 64.0f}) {
+    Blend b;
+    b.rule.threshold = 1e6f;
+    test::Random random(81);
+    b.render(random, {1, 1, 1});
+    b.fill_history({1, 1, 1}, 32);
+    Blend::each([&](int x, int y) {
+      if (x >= kWidth / 2) b.before.samples().at(x, y) = second;
+      b.surface.taps[0].at(x, y) = identity_taps(b.guides, x % 4, y);
+      b.follow_shadow(x, y, kWidth - 1 - x % 4, y);
+    });
+    Channels<float> debug(kWidth, kHeight, kDebugChannels);
+    b.run(b.by_effect(), &debug);
+    Blend::each([&](int x, int y) {
+      ASSERT_EQ(debug[kDebugFrames].at(x, y), second > 40 ? second : 32.0f) << x << ", " << y;
+    });
+  }
+}
+
 TEST(RadianceBlend, TakesTheOnlyCandidateThereIs) {
   Blend b;
   test::Random random(77);

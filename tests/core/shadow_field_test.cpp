@@ -148,6 +148,24 @@ TEST(ShadowTracer, BorrowedBlockersMoveWithTheNearestBlockedSample) {
   EXPECT_NEAR(pixel.y, expected.y, 2e-3);
 }
 
+TEST(ShadowTracer, IsAtRestOnlyWhereCameraLightReceiverAndBlockerAre) {
+  const auto at_rest = [](void (*disturb)(World&)) {
+    World world;
+    world.camera_before = world.camera;
+    world.light_before = world.light_now;
+    world.blocker_before = world.blocker_now;
+    world.floor_before = world.floor_now;
+    disturb(world);
+    world.move();
+    return world.tracer().at_rest(world.scene.slot_of(1), world.scene.slot_of(2));
+  };
+  EXPECT_TRUE(at_rest([](World&) {}));
+  EXPECT_FALSE(at_rest([](World& w) { w.camera_before = World().camera_before; }));
+  EXPECT_FALSE(at_rest([](World& w) { w.light_before = World().light_before; }));
+  EXPECT_FALSE(at_rest([](World& w) { w.blocker_before = World().blocker_before; }));
+  EXPECT_FALSE(at_rest([](World& w) { w.floor_before = World().floor_before; }));
+}
+
 TEST(ShadowTracer, ABlockerWithoutAPastMayHaveComeFromAnywhere) {
   World world;
   world.move();
