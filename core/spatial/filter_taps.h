@@ -9,12 +9,12 @@ namespace holdfast {
 
 inline constexpr int kFilterBlock = 64;  // pixels; the block's state stays in the first cache
 
-/// One row of a pass.
+/// One row of a pass, and the logarithms of its kernel's weights at distance 0, 1 and 2, which
+/// passes with kept weights do not look at.
 struct FilterRow {
   const FilterPass& pass;
   int y;
-  float
-      log2_kernel[3];  ///< of the kernel's weights at distance 0, 1 and 2; not where they are kept
+  float log2_kernel[3];
 };
 
 /// Per-pixel terms of a block: the tangent plane, the normal (times its power) and the running
